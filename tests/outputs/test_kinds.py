@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 
 import docx
+import numpy as np
 import openpyxl
 import pytest
 from click.testing import CliRunner
@@ -150,6 +151,31 @@ def test_texts_are_answers_and_not_lost(outputs):
     lines = (folder / "out.csv").read_text(encoding="utf-8").splitlines()
     column = lines[0].split(",").index("Verdict")
     assert {line.split(",")[column] for line in lines[1:]} == {"low", "middle", "high"}
+
+
+def test_certainties_of_counted_answers_are_their_shares(outputs):
+    _, document, folder = outputs
+    assert not forecast(document, "Avoided")["certainties"]
+    rows = [[*row] for row in openpyxl.load_workbook(folder / "out.xlsx")["Certainty"].iter_rows(values_only=True)]
+    for name, labels in (("Avoided", ["yes", "no"]), ("Verdict", None)):
+        told = forecast(document, name)
+        shares = {each["text"]: each["share"]["value"] for each in told["categories"]} or {
+            "yes": told["yes"]["value"],
+            "no": 1.0 - told["yes"]["value"],
+        }
+        found = {row[1]: row[3] for row in rows if row[0] == name}
+        assert found == pytest.approx(shares)
+        assert [*found] == (labels or [*shares])
+
+
+def test_pairs_have_limits_in_the_form_of_their_cells(outputs):
+    run, document, folder = outputs
+    yes = [each for each in document["pairs"] if each["second"] == "Avoided" and each["first"] == "Speed"]
+    both = np.mean((run.forecasts["Avoided"] == 1.0) & (run.forecasts["Speed"] > 100.0))
+    assert yes[0]["both_above"]["value"] == pytest.approx(both)
+    sheet = openpyxl.load_workbook(folder / "out.xlsx")["Pairs"]
+    said = {cell.value for row in sheet.iter_rows() for cell in row if isinstance(cell.value, str)}
+    assert {"Avoided, yes", "Cost, threshold $260,000", "End, threshold 2026-06-07"} <= said
 
 
 NUMBER = r"-?[\d,]+(?:\.\d+)?(?:e[+-]\d+)?"

@@ -207,7 +207,8 @@ def _show_evidence(run: RunResult) -> None:
     say(paragraph(" ".join([*sentences, trials_sentence(found)])) + "\n")  # remarks come with the other notices
     names = list(found.found.forecasts)[:_MOST_MOVED]
     heads = ("Means with", "Effective trials", *names)
-    table("What each item of evidence moves", heads, move_rows(found, names), right=range(1, len(heads)))
+    forms = {name: run.results[name].form for name in names}
+    table("What each item of evidence moves", heads, move_rows(found, forms), right=range(1, len(heads)))
 
 
 def _show_scenarios(run: RunResult) -> None:

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import evidence_text
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.outputs.summary import estimate_text, share_text
 
 if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.forms import Form
     from xlmc.montecarlo.diagnostics.agreement import Agreement, Answer, ItemAgreement
 
 __all__ = [
@@ -73,17 +75,26 @@ def item_rows(found: Agreement) -> list[tuple[str, ...]]:
     ]
 
 
-def move_rows(found: Agreement, forecasts: Sequence[str]) -> list[tuple[str, ...]]:
-    """Yield a row for each set of items: which, how many effective trials, and the mean of each of these forecasts."""
+def move_rows(found: Agreement, forms: Mapping[str, Form]) -> list[tuple[str, ...]]:
+    """Yield a row for each set of items: which, how many effective trials, and the mean of each of these forecasts.
+
+    Args:
+        found: the agreement.
+        forms: forecast -> how its numbers are written.
+    """
     rows: dict[str, list[Answer]] = {}
     for each in found.answers:
-        if each.forecast in forecasts:
+        if each.forecast in forms:
             rows.setdefault(each.used, []).append(each)
     return [
         (
             used,
             f"{max(each.effective for each in answers):,.0f}",
-            *(estimate_text(each.mean) or _NONE for each in answers),
+            *(_mean(each, forms[each.forecast]) or _NONE for each in answers),
         )
         for used, answers in rows.items()
     ]
+
+
+def _mean(answer: Answer, form: Form) -> str:
+    return share_text(answer.mean) if form.kind is Kind.YES_NO else form.estimate(answer.mean)

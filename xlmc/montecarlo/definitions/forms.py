@@ -265,7 +265,8 @@ def span_text(days: float, error: float | None = None, *, exact: bool = False) -
     if error:
         return f"{format_estimate(days * factor, error * factor)} {unit}"
     if exact:
-        return f"{exact_text(days * factor)} {unit}"
+        text = exact_text(days * factor)
+        return "1 day" if (text, unit) == ("1", "days") else f"{text} {unit}"
     return f"{fixed_text(days * factor, max(decimals_of(days * factor) or 0, 0))} {unit}"
 
 

@@ -216,9 +216,12 @@ class Table:
 
     @property
     def relative_widths(self) -> tuple[float, ...]:
-        """How wide each column is beside the others: numbers and names stay whole, sentences need not."""
+        """How wide each column is beside the others: words and numbers stay whole, sentences need not.
+
+        Widths that were given are raised to those of the longest words; those of the other columns are cut for it.
+        """
         if self.widths:
-            return self.widths
+            return _enough(self.widths, [count / _LINE for count in self._longest_words])
         widest = _WIDEST if self.columns <= _FEW else _NARROW
         lengths = [len(head) for head in self.heads] or [0] * self.columns
         for row in self.rows:
@@ -226,6 +229,39 @@ class Table:
                 lengths[index] = max(lengths[index], len(cell_text(cell)))
         return tuple(3.0 + min(length, widest) for length in lengths)
 
+    @property
+    def crowded(self) -> float:
+        """How many times as wide as a page the table would have to be for every word to stay whole; 1 at least."""
+        return max(sum(self._longest_words) / _LINE, 1.0)
+
+    @property
+    def _longest_words(self) -> list[int]:
+        """`(c,)` characters of the longest word in each column, with the space beside it."""
+        found = [max(map(len, head.split()), default=0) for head in self.heads] or [0] * self.columns
+        for row in self.rows:
+            for index, cell in enumerate(row):
+                words = cell_text(cell).split() if not isinstance(cell, Drawing | Chart) else ()
+                found[index] = max(found[index], max((len(word) for word in words if len(word) < _WIDEST), default=0))
+        return [count + _BESIDE for count in found]
+
+
+def _enough(widths: Sequence[float], least: Sequence[float]) -> tuple[float, ...]:
+    """Return widths as shares of their sum, none below its least share, as far as there is room for that."""
+    whole = sum(widths)
+    found = [width / whole for width in widths]
+    raised: set[int] = set()
+    while low := {index for index, share in enumerate(found) if index not in raised and share < least[index]}:
+        raised |= low
+        left, rest = 1.0 - sum(least[index] for index in raised), [i for i in range(len(found)) if i not in raised]
+        if left <= 0.0 or not rest:
+            return tuple(each / sum(least) for each in least)
+        free = sum(widths[index] for index in rest)
+        found = [least[i] if i in raised else widths[i] / free * left for i in range(len(found))]
+    return tuple(found)
+
+
+_LINE, _BESIDE = 105.0, 2
+"""Characters in a line of a table as wide as the page, and those that the space between two columns takes."""
 
 _WIDEST, _NARROW, _FEW = 40, 14, 8
 """Characters of a column that may stay in one line: of a table of few columns, and of one of more."""

@@ -298,7 +298,8 @@ def _evidence(material: Material) -> Iterator[Block]:
         heads = ("With", "Effective trials", *shown)
         caption = "What each item of evidence moves: the means of the forecasts."
         wide = (1.8, 1.0, *[1.5] * len(shown))
-        yield material.table(caption, heads, move_rows(found, shown), wide, range(1, len(heads)))
+        forms = {name: material.simulation.results[name].form for name in shown}
+        yield material.table(caption, heads, move_rows(found, forms), wide, range(1, len(heads)))
     yield Paragraph(MOVES_MEANING, "small")
     lines = [(each.name, evidence_text(each), each.source or _NONE) for each in material.simulation.model.evidence]
     yield material.table("The readings and their sources.", ("Evidence", "Reading", "Source"), lines, (2, 3, 4))

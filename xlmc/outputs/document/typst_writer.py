@@ -65,6 +65,10 @@ _STYLE: Final = """
 """
 
 
+_TABLE, _SMALLEST = 8.5, 6.0
+"""Points of the letters of a table, and of one whose words would not stay whole else."""
+
+
 def pdf_bytes(document: Document) -> bytes:
     """Return the document as PDF.
 
@@ -166,7 +170,10 @@ def _table(table: Table) -> str:
     top = f"table.header({heads}), " if heads else ""
     rows = "".join(f"  {', '.join(_cell(cell) for cell in row)},\n" for row in table.rows)
     inner = f"table(columns: ({columns},), align: ({aligned},), {top}\n{rows})"
-    return f"#figure(kind: table, caption: [#{_text(table.caption)}], {inner})"
+    figure = f"#figure(kind: table, caption: [#{_text(table.caption)}], {inner})"
+    if table.crowded == 1.0:
+        return figure
+    return f"#[#show table: set text(size: {max(_TABLE / table.crowded, _SMALLEST):.3g}pt)\n{figure}]"
 
 
 def _cell(content: Content) -> str:

@@ -19,6 +19,7 @@ from xlmc.montecarlo.definitions.stating import NOT_ROUNDED
 from xlmc.montecarlo.statistics import proportion
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
+from xlmc.outputs.summary import shares_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from xlmc.analysis.results.statements import Certainty
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.montecarlo.statistics import Estimate
     from xlmc.outputs.sheets.page import Page
     from xlmc.outputs.sheets.trials_sheet import TrialsAt
 
@@ -58,20 +60,32 @@ def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None
 
 
 def write_ranges(page: Page, simulation: RunResult, names: Collection[str] | None = None) -> None:
-    """Write the certainty of the central range and the threshold of the forecasts of these names; None: of all."""
+    """Write the certainty of the central range and the threshold of the forecasts of these names, the share of each
+    text and of yes and no; None: of all.
+    """
     results = {name: each for name, each in simulation.results.items() if names is None or name in names}
-    rows = [_line(name, each) for name, result in results.items() for each in certainties(result)]
+    rows = [
+        row
+        for name, result in results.items()
+        for row in (
+            *(_share_line(name, *each) for each in shares_of(result).items()),
+            *(_line(name, each) for each in certainties(result)),
+        )
+    ]
     if not rows:
-        page.wide("No forecast has a number in an accepted trial.", "paragraph", LAST)
+        page.wide("No forecast has an answer in an accepted trial.", "paragraph", LAST)
         return
-    page.table(["Forecast", "Range", "Trials in it", "Certainty", "±", "95 % from", "to"], rows)
+    page.table(["Forecast", "Range or answer", "Trials in it", "Certainty", "±", "95 % from", "to"], rows)
 
 
 def _line(name: str, found: Certainty) -> list[Shown]:
-    share = found.share
+    return _share_line(name, found.words, found.share)
+
+
+def _share_line(name: str, words: str, share: Estimate) -> list[Shown]:
     return [
         Shown(name, look="name"),
-        Shown(found.words),
+        Shown(words or "(empty)"),
         cells.count(round(share.value * share.n)),
         *cells.share(share),
         *cells.interval(share, percent=True),
@@ -119,10 +133,11 @@ def _write_line(page: Page, result: ForecastResult, values: NDArray[np.float64],
     assert spoken is not None  # there are numbers
     known = values[~np.isnan(values)]
     share = proportion(int(np.count_nonzero((known >= spoken.low) & (known <= spoken.high))), known.size)
-    page.line([Shown(definition.name, look="name"), Shown(definition.units)])
-    for column_of_end, end in ((2, spoken.low), (3, spoken.high)):
-        digits = cells.exact(end, result.form).format
-        page.put(row, column_of_end, Shown(end if math.isfinite(end) else None, digits, "typed"))
+    ends = [
+        Shown(end if math.isfinite(end) else None, cells.exact(end, result.form).format, "typed")
+        for end in (spoken.low, spoken.high)
+    ]
+    page.line([Shown(definition.name, look="name"), Shown(definition.units), *ends])
     low, high = xl_rowcol_to_cell(row, 2), xl_rowcol_to_cell(row, 3)
     certainty, trials = xl_rowcol_to_cell(row, 4), xl_rowcol_to_cell(row, 6 if errors else 5)
     inside = f'ISNUMBER({column})*((({low}="")+({column}>={low}))>0)*((({high}="")+({column}<={high}))>0)'

@@ -5,12 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import evidence_text
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.diagnostics.agreement import Verdict
 from xlmc.outputs.evidence_tables import ITEM_HEADS, MEANING, MOVES_MEANING, trials_sentence
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 
 if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.forms import Form
     from xlmc.montecarlo.diagnostics.agreement import Agreement, Answer, ItemAgreement
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.page import Page
@@ -41,7 +43,7 @@ def write_agreement(page: Page, simulation: RunResult) -> None:
             if remark != found.sentence:
                 page.wide(f"{remark[0].upper()}{remark[1:]}.", "paragraph", _LAST)
         _write_items(page, found)
-        _write_moves(page, found)
+        _write_moves(page, simulation, found)
     _write_sources(page, simulation)
 
 
@@ -72,7 +74,7 @@ def _item(item: ItemAgreement, several: bool) -> list[Shown]:
     ]
 
 
-def _write_moves(page: Page, found: Agreement) -> None:
+def _write_moves(page: Page, simulation: RunResult, found: Agreement) -> None:
     page.heading("What each item moves")
     heads = [
         "Forecast",
@@ -87,19 +89,29 @@ def _write_moves(page: Page, found: Agreement) -> None:
         "to",
         "±",
     ]
-    page.table(heads, [_move(each) for each in found.answers])
+    page.table(heads, [_move(each, simulation.results[each.forecast].form) for each in found.answers])
     page.row += 1
     page.wide(MOVES_MEANING, "remark", _LAST)
 
 
-def _move(answer: Answer) -> list[Shown]:
-    estimates = answer.mean, answer.standard_deviation, answer.low, answer.high
+def _move(answer: Answer, form: Form) -> list[Shown]:
+    estimates = answer.standard_deviation, answer.low, answer.high
+    counted = form.kind is Kind.YES_NO
     units = f", {answer.units}" if answer.units else ""
     return [
         Shown(f"{answer.forecast}{units}", look="name"),
         Shown(answer.used),
         cells.count(round(answer.effective)),
-        *(shown for each in estimates for shown in cells.estimate(each, like=answer.mean)),
+        *(cells.share(answer.mean) if counted else cells.estimate(answer.mean, form=form)),
+        *(
+            shown
+            for each in estimates
+            for shown in (
+                [cells.BLANK] * 2
+                if counted
+                else cells.estimate(each, like=answer.mean, form=form, spread=each is estimates[0])
+            )
+        ),
     ]
 
 

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from itertools import count, islice
 from typing import TYPE_CHECKING
 
-from xlmc.outputs.sheets.cells import LOGICAL, NONE, Shown
+from xlmc.outputs.sheets.cells import LOGICAL, NONE, Shown, shown_text
 from xlmc.outputs.sheets.paper import MARGINS, lay_out
 
 if TYPE_CHECKING:
@@ -32,6 +32,8 @@ _POINTS = 0.75
 _LINE = 15.0
 _HIGHEST = 409.0
 _WIDTH = 8.43
+_LARGE = 1e8
+"""From here on a number may be wider than a column."""
 
 
 class Page:
@@ -109,12 +111,25 @@ class Page:
         for shown, first, end in zip(cells, starts, ends, strict=True):
             if end > first:
                 self.sheet.merge_range(self.row, first, self.row, end, "", self._styles(shown.look, shown.format))
+            else:
+                self._widen(first, shown)
             self.put(self.row, first, shown)
             if isinstance(shown.value, str):
                 lines = max(lines, self._lines(shown, first, end))
         if fit:  # every row, or LibreOffice chooses heights of its own
             self.sheet.set_row(self.row, min(self.height + _LINE * (lines - 1), _HIGHEST))
         self.row += 1
+
+    def _widen(self, column: int, shown: Shown) -> None:
+        """Make a column as wide as a large number in it, which would be `###` or in tiny digits else."""
+        if isinstance(shown.value, str | None) or not math.isfinite(shown.value) or abs(shown.value) < _LARGE:
+            return
+        needed = len(shown_text(shown)) + 1.0
+        own = self._widths[column] if column < len(self._widths) else _WIDTH
+        if needed > own:
+            self._widths += [_WIDTH] * (column + 1 - len(self._widths))
+            self._widths[column] = needed
+            self.sheet.set_column(column, column, needed)
 
     def wide(self, value: str, look: str, last: int, first: int = 0) -> None:
         """Write a text across columns, and go to the next row."""

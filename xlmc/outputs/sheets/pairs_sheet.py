@@ -89,7 +89,7 @@ def write_pair_table(page: Page, pairs: Sequence[Pair]) -> None:
 def _line(pair: Pair) -> list[Shown]:
     greater = [Shown(cells.NONE), BLANK] if pair.first_greater is None else cells.share(pair.first_greater)
     return [
-        *(Shown(_name_and_limit(pair, index), look="name") for index in (0, 1)),
+        *(Shown(said, look="name") for said in pair.said),
         *cells.share(pair.both_above),
         *cells.interval(pair.both_above, percent=True),
         *cells.share(pair.either_above),
@@ -99,17 +99,11 @@ def _line(pair: Pair) -> list[Shown]:
     ]
 
 
-def _name_and_limit(pair: Pair, index: int) -> str:
-    forecast, limit = (pair.first, pair.second)[index], pair.limits[index]
-    units = f" {forecast.units}" if forecast.units else ""
-    what = "threshold" if pair.thresholds[index] else "median"
-    return f"{forecast.name}, {what} {limit:.6g}{units}"
-
-
 def pair_sentences(simulation: RunResult, pairs: Sequence[Pair]) -> list[str]:
     """Return the sentences that say what the table of pairs shows."""
     trials, ranked = {pair.trials for pair in pairs}, {pair.ranked for pair in pairs}
     said = "A limit is the forecast's threshold or, if it has none, its median; it is used as the number printed here."
+    said += " A yes/no answer lies above its limit where it is a yes."
     said += " Probabilities are shares of the accepted trials in which both forecasts are numbers"
     said += f" ({min(trials):,})." if len(trials) == 1 else f" ({min(trials):,} to {max(trials):,})."
     if max(ranked) < max(trials):

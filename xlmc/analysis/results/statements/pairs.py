@@ -45,6 +45,7 @@ class Pair:
         limits: what each is compared with: its threshold, or where it has none its median, in the digits that its error
             supports.
         thresholds: whether each limit is a threshold.
+        said: each forecast with its limit, in words.
         trials: in which both are numbers.
         both_above: P(first > its limit and second > its limit).
         either_above: P(first > its limit or second > its limit).
@@ -57,6 +58,7 @@ class Pair:
     second: Forecast
     limits: tuple[float, float]
     thresholds: tuple[bool, bool]
+    said: tuple[str, str]
     trials: int
     both_above: Estimate
     either_above: Estimate
@@ -87,6 +89,7 @@ def _pair(simulation: RunResult, first: Forecast, second: Forecast) -> Pair | No
         second=second,
         limits=limits,
         thresholds=(first.threshold is not None, second.threshold is not None),
+        said=(_limit_text(simulation, first, limits[0]), _limit_text(simulation, second, limits[1])),
         trials=trials,
         both_above=counts.share(counts.both),
         either_above=counts.share(counts.either),
@@ -100,8 +103,19 @@ def _limit(simulation: RunResult, forecast: Forecast) -> float:
     if forecast.threshold is not None:
         return forecast.threshold
     result = simulation.results[forecast.name]
+    if result.yes is not None:
+        return 0.0  # above it is a yes
     median = result.statistics.median
     return median.value if math.isnan(median.value) else rounded_value(median, forecast.report_to, result.form)[0]
+
+
+def _limit_text(simulation: RunResult, forecast: Forecast, limit: float) -> str:
+    result = simulation.results[forecast.name]
+    if forecast.threshold is None and result.yes is not None:
+        return f"{forecast.name}, yes"
+    units = f" {forecast.units}" if forecast.units else ""
+    what = "median" if forecast.threshold is None else "threshold"
+    return f"{forecast.name}, {what} {result.form.number(limit)}{units}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -17,7 +17,7 @@ from xlmc.analysis.results.statements.significant_digits import (
     rounded_range,
     surely_above,
 )
-from xlmc.montecarlo.definitions.stating import Role
+from xlmc.montecarlo.definitions.stating import Kind, Role
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.parameters import range_text
 from xlmc.montecarlo.statistics import Estimate, complement, probability_above, probability_between
@@ -186,7 +186,7 @@ def _probability_text(event: str, share: Estimate, relation: str) -> str:
 
 
 def _part_text(result: ForecastResult) -> str:
-    """Which of the accepted trials the shares are of, where a forecast is not a number in all of them."""
+    """Which of the accepted trials the shares are of, where a forecast has no answer in some of them."""
     numbers, others, discarded = result.statistics.trials, result.faults.total(), result.discards.total()
     if discarded:
         every = count_text(numbers + others + discarded)
@@ -194,7 +194,8 @@ def _part_text(result: ForecastResult) -> str:
     if not others:
         return ""
     every = count_text(numbers + others)
-    return f"; counted in the {count_text(numbers)} of {every} accepted trials in which it is a number"
+    what = "has an answer" if result.kind in (Kind.YES_NO, Kind.CATEGORY) else "is a number"
+    return f"; counted in the {count_text(numbers)} of {every} accepted trials in which it {what}"
 
 
 def _range_text(found: RoundedRange, nominal: float, units: str, trials: int) -> str:
@@ -251,11 +252,11 @@ class Certainty:
 
 def certainties(result: ForecastResult) -> list[Certainty]:
     """Return the certainties below, in and above the range that is stated, as it is printed; those of the threshold, if
-    any, and of the range that was asked for, if any.
+    any, and of the range that was asked for, if any. Answers that are counted have no range.
     """
     definition, sample = result.definition, result.sample
     units = f" {definition.units}" if definition.units else ""
-    spoken = stated_range(result)
+    spoken = None if result.yes is not None else stated_range(result)
     found = [] if spoken is None else _around(spoken, sample, units)
     threshold, above = definition.threshold, result.statistics.probability_above
     if threshold is not None and above is not None and sample.n:

@@ -176,3 +176,15 @@ def test_parameters_that_vary_by_trial():
         found = family.ppf(np.array([0.2, 0.7, 0.5]), *columns)
         np.testing.assert_allclose(found[:2], good, rtol=1e-12, err_msg=name)
         assert np.isnan(found[2]), name
+
+
+@pytest.mark.parametrize(("skewness", "kurtosis"), [(1.0, 1.9), (-1.0, 2.0), (0.0, 0.5)])
+def test_johnson_refuses_a_kurtosis_that_nothing_has(skewness, kurtosis):
+    fault = FAMILIES["Johnson moments"].fault(10.0, 2.0, skewness, kurtosis)
+    assert fault.key == "kurtosis"
+    assert "must be above 1 + Skewness" in fault.message
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.0, 5.0), (-5.0, 0.0)])
+def test_johnson_sb_ends_at_its_limits(low, high):
+    assert FAMILIES["Johnson SB"].support(low, high, 1.0, 2.0) == (low, high)

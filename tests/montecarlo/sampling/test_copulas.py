@@ -144,3 +144,19 @@ def test_values_that_stand_together_are_drawn_together():
     assert sorted(map(tuple, found.T.tolist())) == sorted(map(tuple, values.T.tolist()))
     assert counts == pytest.approx(1_000, abs=5 * (5_000 * 0.2 * 0.8) ** 0.5)
     assert SameTrials(values[[0, 0]]).pair(0, 1) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_ends_of_the_uniforms_stay_inside(name):
+    """A 0, and the last number below 1, give joined uniforms that every quantile function can take."""
+    ends = np.array([0.0, 1 - 2.0**-53])
+    u = np.array([each.ravel() for each in np.meshgrid(ends, ends)])
+    CASES[name][0](2).join(u)
+    assert (u >= 0).all()
+    assert (u < 1).all()
+
+
+def test_a_reflected_0_is_below_1():
+    u = np.zeros((2, 1))
+    Reflected(Clayton(2, 2.0), (True, True)).join(u)
+    assert (u < 1).all()

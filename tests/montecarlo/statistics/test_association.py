@@ -60,3 +60,8 @@ def test_columns_without_a_correlation_to_state():
     assert rank_correlation(np.arange(9.0), -np.arange(9.0)).value == -1.0
     with pytest.raises(ValueError, match="of one length"):
         rank_correlation([1.0, 2.0], [1.0])
+
+
+def test_of_no_trial_and_of_one_it_is_unknown():
+    for n in (0, 1):
+        assert math.isnan(rank_correlation(np.zeros(n), np.zeros(n)).value)

@@ -264,3 +264,15 @@ def test_weights_that_are_none_are_refused(weighted, weights, area, message):
         weighted(weights, area=area)
     assert message in str(refused.value)
     assert refused.value.hint
+
+
+@pytest.mark.parametrize(("size", "blank"), [(3, "S!M3"), (2, "S!L2")])
+def test_a_blank_correlation_is_named_by_its_cell(model, size, blank):
+    """In a square of three, and in one of two, that stand below the name of the copula."""
+    square = {"K1": "Gaussian", "K2": 1, "K3": 0.5, "L3": 1, "K4": 0.2, "M4": 1}
+    if size == 2:
+        square = {"K1": "Gaussian", "K2": 1, "L3": 1}
+    cells = {key: value.replace("$L$3", "$M$4") for key, value in TWO.items()}
+    with pytest.raises(XlmcError, match="The cell of a correlation is blank") as refused:
+        model(cells | square)
+    assert blank in str(refused.value)

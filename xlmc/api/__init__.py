@@ -5,7 +5,7 @@ What docs/python.md lists stays as it is from version to version.
 
 from __future__ import annotations
 
-from xlmc.api.books import check, convert, replay, verify
+from xlmc.api.books import check, convert, replay, seek, verify
 from xlmc.api.models import Model, Simulation, load, model, open_run
 from xlmc.api.studies import compare, fit, methods, screen, sensitivities, stability, uncertainty
 
@@ -22,6 +22,7 @@ __all__ = [
     "open_run",
     "replay",
     "screen",
+    "seek",
     "sensitivities",
     "stability",
     "uncertainty",

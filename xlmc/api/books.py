@@ -9,11 +9,12 @@ from xlmc.errors import DefinitionError, XlmcError
 from xlmc.montecarlo.model import loading
 
 if TYPE_CHECKING:
+    from xlmc.analysis.studies.seek import Found
     from xlmc.analysis.studies.verify import Verification
     from xlmc.api.models import Model
     from xlmc.outputs.replay import Replayed
 
-__all__ = ["check", "convert", "replay", "verify"]
+__all__ = ["check", "convert", "replay", "seek", "verify"]
 
 
 def check(path: str | Path) -> tuple[XlmcError, ...]:
@@ -35,6 +36,30 @@ def check(path: str | Path) -> tuple[XlmcError, ...]:
         return tuple(scenario_faults(loading.load(path)).values())
     except XlmcError as error:
         return (error,)
+
+
+def seek(
+    path: str | Path, cell: str, to: float, by: str, *, low: float | None = None, high: float | None = None
+) -> Found:
+    """Find the values of one cell at which another is what it is to be, every other input as the workbook has it.
+
+    Args:
+        path: of the workbook, which need not have any table of xlmc.
+        cell: the one with a formula, `Model!D9` or a defined name.
+        to: what it is to be.
+        by: the one to vary, without a formula; it may be an assumption.
+        low: the least value of that; it comes with `high`. Without them the search goes outwards from its own value.
+        high: the largest one.
+
+    Raises:
+        WorkbookError: the file cannot be read.
+        DefinitionError: a cell is none, or the one does not depend on the other.
+        SimulationError: an argument is out of its range, or an assumption has no base value.
+        FormulaError: a cell between them cannot be computed.
+    """
+    from xlmc.analysis.studies.seek import seek
+
+    return seek(path, cell, to, by, low=low, high=high)
 
 
 def verify(path: str | Path, *, everything: bool = False) -> Verification:

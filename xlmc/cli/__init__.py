@@ -1,6 +1,6 @@
 """The command line: `xlmc new`, `xlmc prepare`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc calculate`,
 `xlmc simulate`, `xlmc open`, `xlmc report`, `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`,
-`xlmc stability`, `xlmc uncertainty`.
+`xlmc stability`, `xlmc uncertainty`, `xlmc seek`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it is; 2 bad input, with the cell and what
 to do; 130 interrupted by Ctrl-C; 143 ended by SIGTERM. Modules here import what costs time inside their functions.
@@ -35,6 +35,7 @@ from xlmc.cli.replay import replay
 from xlmc.cli.report import report
 from xlmc.cli.scenario import scenario
 from xlmc.cli.screen import screen
+from xlmc.cli.seek import seek
 from xlmc.cli.simulate import INTERRUPTED, simulate
 from xlmc.cli.stability import stability
 from xlmc.cli.terminal import be_quiet, prepare, put, say
@@ -163,6 +164,7 @@ for _command in (
     fit,
     verify,
     calculate,
+    seek,
     simulate,
     scenario,
     open_window,

@@ -14,6 +14,7 @@ from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Area, Cell, column_letters, host_of
 from xlmc.excel.formula import compile_with_formulas, formula_text, ir
 from xlmc.excel.formula.precedents import references
+from xlmc.excel.functions.registry import Function
 from xlmc.excel.functions.values import Floats, from_objects
 
 __all__ = ["FormulasProgram"]
@@ -40,6 +41,10 @@ class FormulasProgram:
         self.constants: Cells = {**lowering.saved, **lowering.frozen}
         computed = {cell: tree for cell, tree in graph.formulas.items() if cell not in lowering.saved}
         for cell in computed:
+            match computed[cell]:
+                case ir.Call(given=Function(home=home)):
+                    message = f"the engine `formulas` cannot compute what {home} gives"
+                    raise FormulaError(message, where=cell, hint=_OTHER_ENGINE)
             formula = graph.workbook.content(host_of(cell)).formula
             if formula is None or formula.array is not None or formula.dynamic:
                 raise FormulaError("the engine `formulas` has no array formulas", where=cell, hint=_OTHER_ENGINE)

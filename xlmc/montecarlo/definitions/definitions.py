@@ -9,16 +9,17 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.errors import DefinitionError, FormulaError, Notice
+from xlmc.errors import DefinitionError, ErrorCode, FormulaError, Notice
 from xlmc.excel.address import Area, Cell, InFormula
 from xlmc.excel.formula.ir import Expression
 from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.feeds import Feeding
 from xlmc.montecarlo.definitions.run_settings import USUAL, Settings
 from xlmc.montecarlo.definitions.scenarios import Scenario
-from xlmc.montecarlo.definitions.stating import Kind, Role
+from xlmc.montecarlo.definitions.stating import Kind, Role, Which
 from xlmc.montecarlo.distributions import FAMILIES, Family
 from xlmc.montecarlo.sampling.draws import Draw
+from xlmc.montecarlo.statistics.number_text import exact_text
 
 __all__ = [
     "CUTOFFS",
@@ -33,6 +34,7 @@ __all__ = [
     "Forecast",
     "Parameter",
     "Settings",
+    "Solve",
 ]
 
 Parameter = float | Cell
@@ -234,6 +236,39 @@ class Check:
 
 
 @dataclass(frozen=True, slots=True)
+class Solve:
+    """A cell that is not typed in but solved for in every trial, so that another cell has a value.
+
+    Attributes:
+        cell: that is to have the value.
+        to: the value.
+        by: the cell that is solved for.
+        low: the lower end of what it may be.
+        high: the upper end.
+        root: which of several values is taken; None to take none, and make such a trial an error.
+    """
+
+    name: str
+    cell: Cell
+    to: Parameter
+    by: Cell
+    low: Parameter
+    high: Parameter
+    row: Cell
+    root: Which | None = None
+
+    def words(self, code: ErrorCode) -> str:
+        """Say why a trial has no value: its cell is then this error."""
+        ends = f"{_said(self.low)} to {_said(self.high)}"
+        what = "several values" if code is ErrorCode.NUM else "no value"
+        return f"{what} from {ends} make{'s' * (code is not ErrorCode.NUM)} {self.cell} equal to {_said(self.to)}"
+
+
+def _said(given: Parameter) -> str:
+    return str(given) if isinstance(given, Cell) else exact_text(given)
+
+
+@dataclass(frozen=True, slots=True)
 class Correlation:
     """A Spearman rank correlation between two assumptions, by name as defined; of a model, `value` is a number.
 
@@ -290,7 +325,8 @@ class Definitions:
     which are not among `filters`; `unused` are the rows of `xlmc_filters` that are switched off, which nothing else
     holds. `switches` are the names of the rows of filters and evidence that can be used or not, each with the first
     cell of its row, and whether it is used. `feeding` are the other workbooks whose answers feed assumptions, `python`
-    the cells that a function of Python computes, each with the call.
+    the cells that a function of Python computes, each with the call. `solves` are the rows of `xlmc_solve`; in a model
+    `rewritten` has their calls.
     """
 
     assumptions: tuple[Assumption, ...] = ()
@@ -314,6 +350,7 @@ class Definitions:
     unused: tuple[Filter, ...] = ()
     switches: Mapping[str, tuple[Cell, bool]] = field(default_factory=dict)
     python: Mapping[Cell, Expression] = field(default_factory=dict)
+    solves: tuple[Solve, ...] = ()
 
     def is_used(self, row: str) -> bool:
         """Return whether a filter or a row of evidence is used; see `switches`. What is no such row is not off."""

@@ -43,6 +43,7 @@ from xlmc.montecarlo.definitions.tables.reserved_tables import (
 )
 from xlmc.montecarlo.definitions.tables.scenario_rows import read_scenarios
 from xlmc.montecarlo.definitions.tables.settings import read_settings
+from xlmc.montecarlo.definitions.tables.solves import read_solves, refuse_taken
 from xlmc.montecarlo.definitions.tables.table_rows import holds_rows
 from xlmc.montecarlo.definitions.unavailable import (
     TABLE_REASON,
@@ -89,7 +90,8 @@ def read_definitions(
     tables = definition_tables(workbook, findings)
     uncertain, answers, tests = Claims("assumption"), Claims("forecast"), Claims("filter")
     settings, central, stated = read_settings(workbook, tables["xlmc_settings"], engines, findings)
-    computed = Computed(workbook, drawn=uncertain.cells, python=python)
+    solves = read_solves(workbook, tables["xlmc_solve"], Computed(workbook, drawn=()), findings)
+    computed = Computed(workbook, drawn=uncertain.cells, python={*python, *(each.by for each in solves)})
     assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
     forecasts = read_forecasts(workbook, tables["xlmc_forecasts"], computed, central, answers, findings)
     rows = read_filters(workbook, tables["xlmc_filters"], computed, tests, findings, switched)
@@ -133,6 +135,7 @@ def read_definitions(
     forecasts = *forecasts, *dialogs.forecasts, *in_cells
     filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
     _remark_on_calls(calls, settings, findings)
+    refuse_taken(solves, {each.cell: each.row for each in assumptions}, findings)
     drawn = {each.cell for each in assumptions if not each.frozen}
     what_if = tables_of_run(workbook, drawn, calls.shown.keys() | calls.unavailable.keys(), calls.rewritten)
     remark_on_tables(workbook.data_tables, what_if, findings)
@@ -180,6 +183,7 @@ def read_definitions(
         unused=unused,
         switches=dict(_switches([*rows, *evidence])),
         python=python,
+        solves=solves,
     )
 
 

@@ -7,7 +7,7 @@ from typing import TypeVar
 
 from xlmc.montecarlo.distributions.spelling import plain
 
-__all__ = ["NOT_ROUNDED", "Kind", "Named", "Role", "Uncertainty", "named"]
+__all__ = ["NOT_ROUNDED", "Kind", "Named", "Role", "Uncertainty", "Which", "named"]
 
 
 class Role(StrEnum):
@@ -43,6 +43,13 @@ class Uncertainty(StrEnum):
     VARIABLE = "variable"
 
 
+class Which(StrEnum):
+    """Which of several values that solve for a cell is taken."""
+
+    FIRST = "first"
+    LAST = "last"
+
+
 NOT_ROUNDED = (Kind.YES_NO, Kind.CATEGORY)
 """Kinds whose numbers stand for words, so that they are not rounded."""
 
@@ -55,7 +62,7 @@ _ALSO = {
     "date/time": Kind.DATE,
 }
 
-Named = TypeVar("Named", Role, Kind, Uncertainty)
+Named = TypeVar("Named", Role, Kind, Uncertainty, Which)
 
 
 def named(kind: type[Named], text: str) -> Named | None:

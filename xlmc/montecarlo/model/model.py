@@ -56,6 +56,7 @@ from xlmc.montecarlo.model.needed import (
     refuse_without_base,
     targets_of,
 )
+from xlmc.montecarlo.model.solving import with_solved_cells
 from xlmc.montecarlo.model.stated_formulas import with_stated_formulas
 from xlmc.montecarlo.sampling.draws import CorrelatedGroup, Draw, DrawStage, Filler, Sampler
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
@@ -193,6 +194,7 @@ class CompiledModel:
     """
 
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
+        definitions = with_solved_cells(workbook, definitions)
         given, definitions = definitions, with_numbers(workbook, definitions)
         self._folded = definitions is not given
         self._compile(workbook, definitions, path)

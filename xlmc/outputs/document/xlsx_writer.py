@@ -25,7 +25,7 @@ from xlmc.outputs.document.parts import (
     cell_text,
 )
 from xlmc.outputs.sheets.cells import Shown, spread_format
-from xlmc.outputs.sheets.styles import DARK, INK, SIZE, across, bounds, straight, upwards
+from xlmc.outputs.sheets.styles import DARK, INK, SIZE, across, bounds, no_reference, straight, upwards
 
 if TYPE_CHECKING:
     from xlsxwriter.chart import Chart as ExcelChart
@@ -137,7 +137,7 @@ def _write_chart(page: Page, book: Workbook, chart: Chart, numbers: Page) -> Non
         made.set_size({"width": SIZE[0], "height": high})
         rows = high // _PIXELS + 1
     if chart.title:
-        made.set_title({"name": chart.title, "name_font": {"size": 12, "bold": True, "color": INK}})
+        made.set_title({"name": no_reference(chart.title), "name_font": {"size": 12, "bold": True, "color": INK}})
     else:
         made.set_title({"none": True})
     page.sheet.insert_chart(page.row, 0, made, {"object_position": 1, "description": chart.said})
@@ -161,8 +161,8 @@ def _line_chart(book: Workbook, chart: Chart, shown: Lines, numbers: Page) -> Ex
             }
         )
     low, high = shown.ends
-    made.set_x_axis({**across(), "name": chart.across, **bounds(low, high)})
-    vertical = upwards(shown.upwards, "0%" if shown.share else "General")
+    made.set_x_axis({**across(), "name": no_reference(chart.across), **bounds(low, high)})
+    vertical = upwards(no_reference(shown.upwards), "0%" if shown.share else "General")
     made.set_y_axis({**vertical, **({"min": 0, "max": 1} if shown.share else {})})
     made.set_legend({"position": "right"})
     return made
@@ -183,7 +183,7 @@ def _bar_chart(book: Workbook, chart: Chart, shown: Bars, numbers: Page) -> Exce
                 "gap": 40,
             }
         )
-    made.set_x_axis({**across(), "name": chart.across})
+    made.set_x_axis({**across(), "name": no_reference(chart.across)})
     made.set_y_axis({"reverse": True, "label_position": "low", "num_font": {"rotation": 0}})  # all are shown
     made.set_legend({"none": True})
     return made

@@ -14,6 +14,7 @@ from xlmc.analysis.results.statements.in_words import (
     cutoffs_text,
     discards_of,
     evidence_text,
+    given_text,
     limits_text,
     notes_text,
     parameters_text,
@@ -40,6 +41,7 @@ __all__ = [
     "filter_section",
     "forecast_filter_section",
     "forecast_section",
+    "solve_section",
 ]
 
 
@@ -80,6 +82,15 @@ _FORECAST_FILTER = (
     ("because", "Because"),
     ("discarded", "Discarded"),
     ("notes", "Notes"),
+)
+_SOLVE = (
+    ("name", "Solution"),
+    ("cell", "Cell"),
+    ("to", "To"),
+    ("by", "By"),
+    ("low", "Low"),
+    ("high", "High"),
+    ("root", "Root"),
 )
 _CHECK = (
     ("name", "Check"),
@@ -232,6 +243,23 @@ def check_section(simulation: RunResult) -> Section:
         for check in simulation.checks
     )
     return Section("checks", "Checks", table=RecordTable(_CHECK, rows))
+
+
+def solve_section(simulation: RunResult) -> Section:
+    """Every cell that is solved for."""
+    rows = tuple(
+        (
+            each.name,
+            str(each.cell),
+            given_text(each.to),
+            str(each.by),
+            given_text(each.low),
+            given_text(each.high),
+            each.root or "only",
+        )
+        for each in simulation.model.definitions.solves
+    )
+    return Section("solves", "Cells that are solved for", table=RecordTable(_SOLVE, rows))
 
 
 def assumption_section(simulation: RunResult) -> Section:

@@ -8,8 +8,10 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record.needed_cells import content_text
+from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell, host_of
 from xlmc.montecarlo.diagnostics.cell_errors import Root
+from xlmc.montecarlo.model.solving import fault_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -92,9 +94,16 @@ def _lost(simulation: RunResult, met: ErrorMet) -> str:
     share = float(f"{100 * met.trials / max(of, 1):.2g}")
     sentence = f"{met.what} in {met.trials:,} of {of:,} {'accepted ' * accepted}trials ({share:g} %)"
     if met.root is None:
-        return sentence
+        why = fault_text(simulation.model.definitions.solves, met.cell, _code(met.error))
+        return f"{sentence}: {why}" if why else sentence
     cell, code = met.root
-    return f"{sentence}, from {cell} {code.text}: {content_text(simulation.model.workbook, host_of(cell))}"
+    why = fault_text(simulation.model.definitions.solves, cell, code)
+    return f"{sentence}, from {cell} {code.text}: {why or content_text(simulation.model.workbook, host_of(cell))}"
+
+
+def _code(error: str) -> ErrorCode | None:
+    """Return the error that a text says; None where it says something else."""
+    return next((code for code in ErrorCode if code.text == error), None)
 
 
 def rest_sentences(simulation: RunResult) -> list[str]:

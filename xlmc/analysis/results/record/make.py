@@ -21,6 +21,7 @@ from xlmc.analysis.results.record.definition_tables import (
     filter_section,
     forecast_filter_section,
     forecast_section,
+    solve_section,
 )
 from xlmc.analysis.results.record.errors_met import errors_met
 from xlmc.analysis.results.record.needed_cells import cell_section, needed_contents, structure_section
@@ -157,6 +158,7 @@ def make_record(simulation: RunResult, command: str | None = None) -> Record:
             *([forecast_filter_section(simulation)] if simulation.model.forecast_filters else []),
             *([evidence_section(simulation)] if simulation.model.evidence else []),
             *([check_section(simulation)] if simulation.checks else []),
+            *([solve_section(simulation)] if simulation.model.definitions.solves else []),
             assumption_section(simulation),
             correlation_section(simulation),
             _messages("warnings", "Warnings", simulation.warnings),

@@ -22,7 +22,7 @@ from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.table_rows import Row, as_text, required_text
 from xlmc.montecarlo.distributions.spelling import name_key
 
-__all__ = ["Claims", "identify"]
+__all__ = ["Claims", "cell_pointed_to", "identify"]
 
 
 @dataclass(slots=True)
@@ -108,7 +108,7 @@ def _cell_of_row(row: Row, name: str, findings: Findings) -> Cell:
         if row.filled("Value"):
             hint = "Clear one of them: Value is itself the cell, Cell points to one elsewhere"
             raise DefinitionError("Both Value and Cell are filled in", where=where, hint=hint)
-        cell = _cell_pointed_to(row, findings)
+        cell = cell_pointed_to(row, "Cell", findings)
     elif row.filled("Value") or row.filled("Call"):
         cell = row.cell("Value")
     else:
@@ -117,17 +117,24 @@ def _cell_of_row(row: Row, name: str, findings: Findings) -> Cell:
     return cell
 
 
-def _cell_pointed_to(row: Row, findings: Findings) -> Cell:
-    where, content = row.cell("Cell"), row.content("Cell")
+def cell_pointed_to(row: Row, heading: str, findings: Findings) -> Cell:
+    """Return the cell that a column of the row refers to; a notice says that a reference as a text goes stale.
+
+    Raises:
+        DefinitionError: it is no reference to one cell.
+    """
+    where, content = row.cell(heading), row.content(heading)
     if content.formula is not None:
         text = formula_at(content.formula, where)
         return cell_of_reference(row.workbook, text, where.sheet, where)
     if not isinstance(content.value, str):
-        message = f"Cell holds {as_text(content.value)}, which is not a reference"
+        message = f"{heading} holds {as_text(content.value)}, which is not a reference"
         raise DefinitionError(message, where=where, hint="Write a formula that is one reference, such as =Inputs!B7")
     text = content.value.strip().removeprefix("=").strip()
     cell = _cell_of_text(row, text, where)
-    message = f"Cell is the text {text!r}, which goes stale when rows move or names change; the formula ={cell} follows"
+    message = (
+        f"{heading} is the text {text!r}, which goes stale when rows move or names change; the formula ={cell} follows"
+    )
     findings.notice(message, where)
     return cell
 

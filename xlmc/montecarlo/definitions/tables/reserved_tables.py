@@ -27,6 +27,7 @@ KINDS = (
     "xlmc_correlations",
     "xlmc_correlation_matrix",
     "xlmc_scenarios",
+    "xlmc_solve",
     "xlmc_settings",
     CONVERTED,
 )

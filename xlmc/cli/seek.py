@@ -1,0 +1,119 @@
+"""`xlmc seek`: the value of one cell at which another has the value it is to have."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from xlmc.cli.blocks import show
+from xlmc.cli.study_output import STUDY, study_options
+from xlmc.cli.terminal import say_json
+from xlmc.cli.writing import write_files
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.seek import Found
+    from xlmc.outputs.document.parts import Block
+    from xlmc.outputs.study_report import StudyReport
+
+__all__ = ["seek"]
+
+NOT_FOUND = 1
+
+
+@click.command()
+@click.argument("book", type=click.Path(path_type=Path))
+@click.option("--cell", required=True, help="The cell that is to have a value: Model!D9, or a defined name.")
+@click.option("--to", type=float, required=True, help="The value that it is to have.")
+@click.option("--by", required=True, help="The cell to vary, which holds no formula: Inputs!B4, or a defined name.")
+@click.option("--low", type=float, help="The least value of that cell.  [default: search outwards from its own value]")
+@click.option("--high", type=float, help="The largest value of that cell.")
+@study_options(STUDY)
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+def seek(
+    book: Path,
+    cell: str,
+    to: float,
+    by: str,
+    low: float | None,
+    high: float | None,
+    output: tuple[Path, ...],
+    also: tuple[Path, ...],
+    overwrite: bool,
+    as_json: bool,
+) -> None:
+    """Find the value of one cell of BOOK at which another has a given value, all else as it is in the workbook."""
+    from xlmc.analysis.studies import seek as study
+    from xlmc.outputs.document.parts import blocks_of
+    from xlmc.outputs.study_report import Files
+
+    files = Files((*output, *also), [book], overwrite=overwrite)
+    files.check()
+    found = study.seek(book, cell, to, by, low=low, high=high)
+    report = _report(found)
+    written = write_files(files.writers(report))
+    if as_json:
+        say_json(report.as_json())
+    else:
+        show(blocks_of([f"{report.below}.", *report.blocks]))
+        written.print_paths()
+    written.check()
+    if not found.values.size:
+        raise click.exceptions.Exit(NOT_FOUND)
+
+
+def _report(found: Found) -> StudyReport:
+    from xlmc.montecarlo.statistics.number_text import exact_text
+    from xlmc.outputs.document.parts import blocks_of
+    from xlmc.outputs.study_report import StudyReport
+
+    title = f"Where is {found.cell} equal to {exact_text(found.to)}?"
+    below = f"{found.workbook.name}: {found.cell} as a function of {found.by}, all else as in the workbook"
+    return StudyReport(title, below, blocks_of(_blocks(found)), "Seek", partial(_as_json, found))
+
+
+def _blocks(found: Found) -> Iterator[str | Block]:
+    from xlmc.montecarlo.statistics.number_text import exact_text, number_text
+    from xlmc.outputs.document.parts import Chart, Figure, Line, Lines, Table
+
+    span = f"from {number_text(found.low)} to {number_text(found.high)}"
+    if not found.values.size:
+        yield f"No value of {found.by} {span} makes {found.cell} equal to {exact_text(found.to)}."
+    elif found.values.size == 1:
+        yield f"{found.cell} is {exact_text(found.to)} where {found.by} is {number_text(found.values[0], 12)}."
+    else:
+        many = f"{found.values.size} values of {found.by} {span}"
+        yield f"{many} make {found.cell} equal to {exact_text(found.to)}."
+    base = [] if found.base is None else [("In the workbook", found.base, found.base_answer)]
+    solved = zip(found.values.tolist(), found.answers.tolist(), strict=True)
+    rows = [*base, *((f"Value {number}", *pair) for number, pair in enumerate(solved, 1))]
+    texts = tuple((name, number_text(at, 12), "" if is_ is None else number_text(is_, 12)) for name, at, is_ in rows)
+    if texts:
+        yield Table("What was found", ("", str(found.by), str(found.cell)), texts, (1, 2))
+    points = tuple((x, y) for x, y in zip(*map(list, found.curve), strict=True) if y == y)
+    if len(points) > 1:
+        wanted = tuple((at, found.to) for at in (points[0][0], points[-1][0]))
+        lines = (Line(str(found.cell), points), Line("Wanted", wanted))
+        said = f"{found.cell} for values of {found.by}, and the value it is to have"
+        yield Figure(Chart("", str(found.by), Lines(lines, str(found.cell), now=found.value), said), said)
+
+
+def _as_json(found: Found) -> dict[str, object]:
+    from xlmc.montecarlo.statistics.estimate import finite
+
+    return {
+        "book": str(found.workbook.name),
+        "cell": str(found.cell),
+        "to": found.to,
+        "by": str(found.by),
+        "low": found.low,
+        "high": found.high,
+        "base": {"by": found.base, "cell": found.base_answer},
+        "values": [
+            {"by": value, "cell": finite(answer)}
+            for value, answer in zip(found.values.tolist(), found.answers.tolist(), strict=True)
+        ],
+    }

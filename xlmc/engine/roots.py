@@ -1,0 +1,198 @@
+"""Roots of one function of one unknown in many trials at once: a scan for changes of sign, then secants.
+
+Every trial is scanned at the same shares of its own range. Each change of sign is a bracket of its own, and all of them
+are solved together by a few steps of Anderson and Björck's method. Where these do not converge, the bracket is narrowed
+by Chandrupatla's method, inverse quadratic interpolation or else halving, until its ends are neighbours. Where a
+function jumps past 0, or has a pole, it changes its sign and is 0 nowhere: that is no root.
+
+Sources: Anderson and Björck 1973, "A new high order method of regula falsi type for computing a root of an equation",
+BIT 13; Chandrupatla 1997, "A new hybrid quadratic/bisection algorithm for finding the zero of a nonlinear function
+without using derivatives", Advances in Engineering Software 28.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+__all__ = ["SCANNED", "Roots", "find_roots"]
+
+SCANNED: Final = 16
+"""Parts of the range that are looked at; two roots within one part cancel, and are not seen."""
+
+_MOST_ROUNDS: Final = 200
+_JUMP: Final = 1e-3
+"""A function that is still this large at a root, as a share of its values at both ends of the bracket, jumps there."""
+
+_SECANTS, _FIRST_LOOK = 12, 3
+_CONVERGED: Final = 1e-9
+_EPSILON: Final = float(np.finfo(np.float64).eps)
+
+_TINY: Final = 2.0**-1000
+
+Floats = NDArray[np.float64]
+Trials = NDArray[np.intp]
+Function = Callable[[Floats, Trials | None], Floats]
+"""Takes the unknown `(m,)` and the trials `(m,)` that it is for, None for all; gives `(m,)`, NaN for no number."""
+
+
+@dataclass(frozen=True, slots=True)
+class Roots:
+    """All roots that were found, by trial, those of a trial in ascending order.
+
+    Attributes:
+        trials: `(r,)`.
+        values: `(r,)`.
+    """
+
+    trials: Trials
+    values: Floats
+
+    def counts(self, n: int) -> NDArray[np.intp]:
+        """`(n,)` how many each trial has."""
+        return np.bincount(self.trials, minlength=n)
+
+    def chosen(self, n: int, *, last: bool = False) -> Floats:
+        """`(n,)` the first root of each trial, or the last; NaN where it has none."""
+        found = np.full(n, np.nan)
+        order = slice(None) if last else slice(None, None, -1)
+        found[self.trials[order]] = self.values[order]  # of a trial that stands several times, the last one stays
+        return found
+
+
+def find_roots(function: Function, low: Floats, high: Floats) -> Roots:
+    """Find where a function is 0.
+
+    Args:
+        function: of the unknown and the trial.
+        low: `(n,)` the lower end of each trial's range; NaN for a trial without one.
+        high: `(n,)` the upper end; a trial whose ends are in the other order has no root.
+
+    >>> found = find_roots(lambda x, trial: x * x - trial - 1.0, np.zeros(3), np.full(3, 9.0))
+    >>> found.values.round(12).tolist()
+    [1.0, 1.414213562373, 1.732050807569]
+    """
+    with np.errstate(all="ignore"):
+        known = np.isfinite(low) & np.isfinite(high) & (low <= high)
+        trials = None if known.all() else np.flatnonzero(known)
+        brackets, exact = _scan(function, trials, low[known], high[known])
+        x, remainder = _solve(function, brackets)
+        ends = np.maximum(np.abs(brackets.at_low), np.abs(brackets.at_high))
+        sound = np.abs(remainder) <= _JUMP * ends
+    where = np.concatenate([brackets.trials[sound], exact[0]])
+    values = np.concatenate([x[sound], exact[1]])
+    if not exact[0].size:  # the scan goes upwards, so that brackets of a trial are in order
+        order = np.argsort(where, kind="stable")
+        return Roots(where[order], values[order])
+    order = np.lexsort((values, where))
+    where, values = where[order], values[order]
+    new = np.ones(where.size, bool)
+    new[1:] = (where[1:] != where[:-1]) | (values[1:] != values[:-1])
+    return Roots(where[new], values[new])
+
+
+@dataclass(frozen=True, slots=True)
+class _Brackets:
+    """Intervals at whose ends a function has different signs, `(m,)` each, and its values there."""
+
+    trials: Trials
+    low: Floats
+    high: Floats
+    at_low: Floats
+    at_high: Floats
+
+
+def _scan(
+    function: Function, trials: Trials | None, low: Floats, high: Floats
+) -> tuple[_Brackets, tuple[Trials, Floats]]:
+    """Look at the range of some trials, None for all: the brackets, and the points where the function is exactly 0."""
+    found: list[tuple[Any, ...]] = []
+    numbers = np.arange(low.size) if trials is None else trials
+    left, before = low, function(low, trials)
+    zeros = [(numbers[before == 0.0], low[before == 0.0])]
+    positive = before > 0.0
+    for part in range(1, SCANNED + 1):
+        at = high if part == SCANNED else low + (high - low) * (part / SCANNED)
+        values = function(at, trials)
+        if not values.all():
+            zeros.append((numbers[values == 0.0], at[values == 0.0]))
+        above = values > 0.0
+        here = np.flatnonzero(above != positive)
+        if here.size:
+            here = here[np.sign(before[here]) * np.sign(values[here]) < 0.0]  # none of a zero, and of no number
+            found.append((numbers[here], left[here], at[here], before[here], values[here]))
+        left, before, positive = at, values, above
+    found = found or [(numbers[:0], *[low[:0]] * 4)]
+    where, *columns = map(np.concatenate, zip(*found, strict=True))
+    trials_of_zeros, points = map(np.concatenate, zip(*zeros, strict=True))
+    return _Brackets(where, *columns), (trials_of_zeros, points)
+
+
+def _solve(function: Function, brackets: _Brackets) -> tuple[Floats, Floats]:
+    """Return the root in each bracket, `(m,)`, and the function there: by secants, and else by narrowing.
+
+    A secant's end is taken only where the step to it was one of the last digits, and the function has become far
+    smaller than at both ends.
+    """
+    trials, a, b, fa, fb = (getattr(brackets, key) for key in _Brackets.__slots__)
+    roots, remainder = np.empty(trials.size), np.empty(trials.size)
+    left, small = np.arange(trials.size), _CONVERGED * np.minimum(np.abs(fa), np.abs(fb))
+    for step in range(_SECANTS):
+        if not left.size:
+            return roots, remainder
+        x = b - fb * (b - a) / (fb - fa)
+        fx = function(x, trials)
+        if step >= _FIRST_LOOK:
+            done = ((np.abs(x - b) <= 4.0 * _EPSILON * np.abs(x)) & (np.abs(fx) <= small)) | (fx == 0.0)
+            if done.any():
+                at = left[done]
+                roots[at], remainder[at] = x[done], fx[done]
+                on = np.flatnonzero(~done)
+                left, trials, small, a, b, fa, fb, x, fx = (e[on] for e in (left, trials, small, a, b, fa, fb, x, fx))
+        crossed, part = (fx > 0.0) != (fb > 0.0), 1.0 - fx / fb
+        part[~(part > 0.0)] = 0.5
+        a, fa = np.where(crossed, b, a), np.where(crossed, fb, fa * part)
+        b, fb = x, fx
+    if left.size:
+        columns = (getattr(brackets, key)[left] for key in _Brackets.__slots__)
+        roots[left], remainder[left] = _narrow(function, _Brackets(*columns))
+    return roots, remainder
+
+
+def _narrow(function: Function, brackets: _Brackets) -> tuple[Floats, Floats]:
+    """Narrow brackets until their ends are neighbours, and give the better end of each, and its value.
+
+    A bracket in which the function has no number somewhere gives NaN.
+    """
+    trials, count = brackets.trials, brackets.trials.size
+    found, remainder = np.full(count, np.nan), np.full(count, np.inf)
+    left, share = np.arange(count), np.full(count, 0.5)
+    x1, f1, x2, f2 = brackets.high, brackets.at_high, brackets.low, brackets.at_low
+    for _ in range(_MOST_ROUNDS):
+        if not left.size:
+            break
+        x = x1 + share * (x2 - x1)
+        f = function(x, trials[left])
+        same = np.sign(f) == np.sign(f1)
+        x3, f3 = np.where(same, x1, x2), np.where(same, f1, f2)
+        x2, f2 = np.where(same, x2, x1), np.where(same, f2, f1)
+        x1, f1 = x, f
+        nearer = np.abs(f1) < np.abs(f2)
+        best, value = np.where(nearer, x1, x2), np.where(nearer, f1, f2)
+        width = np.abs(x2 - x1)
+        least = (2.0 * _EPSILON * np.abs(best) + _TINY) / width
+        done = (least > 0.5) | (value == 0.0) | ~(width > 0.0)
+        lost = np.isnan(f)
+        if (done | lost).any():
+            found[left[done & ~lost]], remainder[left[done & ~lost]] = best[done & ~lost], value[done & ~lost]
+            on = ~(done | lost)
+            left, x1, f1, x2, f2, x3, f3, least = (e[on] for e in (left, x1, f1, x2, f2, x3, f3, least))
+        xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
+        smooth = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
+        step = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
+        share = np.clip(np.where(smooth, step, 0.5), least, 1.0 - least)
+    return found, remainder

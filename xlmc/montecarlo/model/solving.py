@@ -1,0 +1,229 @@
+"""Cells that are solved for: in every trial, the value of one cell at which another has the value it is to have.
+
+To all that follows such a cell holds a formula: a function, which no file holds, of the assumptions that the solution
+depends on. It evaluates the cells between the two with the fast engine, again and again, for many trials at once. A
+trial without a solution is `#N/A`, one with several `#NUM!`, unless the row says which of them is meant.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Final
+
+import numpy as np
+from numpy.typing import NDArray
+
+from xlmc.engine.engine import Target
+from xlmc.engine.graph.lowering import Lowering, lower_cells
+from xlmc.engine.numpy.numpy_engine import NumpyProgram
+from xlmc.engine.roots import Function as Difference
+from xlmc.engine.roots import find_roots
+from xlmc.errors import DefinitionError, ErrorCode
+from xlmc.excel.address import Cell
+from xlmc.excel.formula import Resolver, ir
+from xlmc.excel.functions.facts import Facts
+from xlmc.excel.functions.registry import Anything, Function, Kind
+from xlmc.excel.functions.values import Codes, Value
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions.definitions import Definitions, Parameter, Solve
+from xlmc.montecarlo.definitions.stating import Which
+
+__all__ = ["Unknown", "fault_text", "unknown_of", "with_solved_cells"]
+
+Floats = NDArray[np.float64]
+
+_TOGETHER: Final = 1 << 14
+"""Trials that are solved at once."""
+
+_BY: Final = "\0by"
+"""The name of the unknown among inputs; no assumption has it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Unknown:
+    """What a cell is for each value of another one, as a difference to what it is to be.
+
+    Attributes:
+        both: the program of the cell and of what it is to be; their difference is not rounded as Excel's is.
+        ends: the program of both ends of the range; None where the range is given in another way.
+        inputs: the assumptions that either needs, in order.
+    """
+
+    both: NumpyProgram
+    ends: NumpyProgram | None
+    inputs: tuple[str, ...]
+
+    def range_of(self, given: Mapping[str, Floats], n: int) -> tuple[Floats, Floats]:
+        """Return both ends of the range, `(n,)` each; NaN for an error."""
+        assert self.ends is not None
+        at = {_BY: np.zeros(n), **given}
+        low, high = (column.as_floats() for column in self.ends.evaluator(n).filters(at, n))
+        return low, high
+
+    def evaluated(self, given: Mapping[str, Floats]) -> Difference:
+        """Return the difference as a function of the unknown and the trial, of assumptions `(n,)` each; for one thread.
+
+        It has no number where the cell is an error, a text or blank.
+        """
+        block = min(self.both.largest_block, max((values.size for values in given.values()), default=1 << 12))
+        evaluator = self.both.evaluator(block)
+
+        def difference(at: Floats, trials: NDArray[np.intp] | None) -> Floats:
+            found = np.empty(at.size)
+            for start in range(0, at.size, block):
+                part = slice(start, min(start + block, at.size))
+                these = part if trials is None else trials[part]
+                inputs = {_BY: at[part], **{name: values[these] for name, values in given.items()}}
+                value, to = evaluator.filters(inputs, part.stop - part.start)
+                np.subtract(value.as_floats(copy=False), to.as_floats(copy=False), out=found[part])
+            return found
+
+        return difference
+
+
+@dataclass(frozen=True, slots=True)
+class _Body:
+    """What the engines call: values of the assumptions in, `(n,)` solutions out."""
+
+    unknown: Unknown
+    root: Which | None
+
+    def __call__(self, *values: Value) -> Value:
+        """Return the solutions; an error of an assumption is that error."""
+        n = max(value.shape[0] for value in values)
+        read = [value.to_numbers() for value in values]
+        errors = np.zeros(n, np.uint8)
+        for _, codes in read:
+            errors = np.where(errors > 0, errors, codes).astype(np.uint8)
+        given = {
+            name: np.array(np.broadcast_to(numbers, (n,)), np.float64)
+            for name, (numbers, _) in zip(self.unknown.inputs, read, strict=False)
+        }
+        parts = [slice(start, min(start + _TOGETHER, n)) for start in range(0, n, _TOGETHER)]
+        found = [self._solve(given, errors, part) for part in parts]
+        return Value.of_numbers(*(np.concatenate(column) for column in zip(*found, strict=True)))
+
+    def _solve(self, given: Mapping[str, Floats], errors: Codes, part: slice) -> tuple[Floats, Codes]:
+        """Solve some of the trials, few enough for the cache: solutions and errors, `(m,)` each."""
+        here, known = {name: values[part] for name, values in given.items()}, errors[part]
+        m = known.size
+        low, high = self.unknown.range_of(here, m)
+        found = find_roots(self.unknown.evaluated(here), np.where(known > 0, np.nan, low), high)
+        counts = found.counts(m)
+        codes = np.where(counts == 0, np.uint8(ErrorCode.NA), np.uint8(0))
+        if self.root is None:
+            codes = np.where(counts > 1, np.uint8(ErrorCode.NUM), codes)
+        codes = np.where(known > 0, known, codes).astype(np.uint8)
+        solved = np.where(codes > 0, 0.0, found.chosen(m, last=self.root is Which.LAST))
+        return solved, codes
+
+
+def unknown_of(
+    workbook: Workbook,
+    definitions: Definitions,
+    cell: Cell,
+    to: Parameter,
+    by: Cell,
+    ends: tuple[Parameter, Parameter] | None,
+    where: Cell | str,
+) -> Unknown:
+    """Compile what a cell is, less what it is to be, as a function of another cell.
+
+    Args:
+        workbook: with both.
+        definitions: its assumptions, which the function takes, too, and the formulas that stand for calls.
+        cell: that is to have the value.
+        to: the value.
+        by: the cell that is unknown.
+        ends: of its range, if formulas may give them.
+        where: what asks for it, for messages.
+
+    Raises:
+        DefinitionError: the cell does not depend on the unknown one, or an end of the range does.
+        FormulaError: a cell between them cannot be computed.
+    """
+    named = {a.cell: a.name for a in definitions.assumptions if a.cell != by}
+    resolver = Resolver(workbook, [*named, by], rewritten=definitions.rewritten)
+
+    def lower(cells: Iterable[Cell]) -> Lowering:
+        return lower_cells(resolver, list(cells), {**named, by: _BY}, {})
+
+    wanted = lower(each for each in (cell, to) if isinstance(each, Cell))
+    if by not in lower([cell]).graph.reached:
+        hint = f"Choose an input that {cell} is computed from" if cell != by else "Name another cell"
+        raise DefinitionError(f"{cell} does not depend on {by}", where=where, hint=hint)
+    reached, program = set(wanted.graph.reached), None
+    if ends is not None:
+        limits = lower(each for each in ends if isinstance(each, Cell))
+        if by in limits.graph.reached:
+            raise DefinitionError(
+                f"The range of {by} depends on {by}", where=where, hint="Give Low and High as numbers"
+            )
+        reached |= limits.graph.reached
+        targets = [Target(ir.Binary("+", _tree(each), ir.Number(0.0)), by) for each in ends]
+        program = NumpyProgram.of(limits, targets, [], frozenset())
+    both = [Target(ir.Binary("+", _tree(each), ir.Number(0.0)), cell) for each in (cell, to)]
+    inputs = tuple(name for at, name in named.items() if at in reached)
+    return Unknown(NumpyProgram.of(wanted, both, [], frozenset()), program, inputs)
+
+
+def _tree(given: Parameter) -> ir.Expression:
+    return given if isinstance(given, Cell) else ir.Number(given)
+
+
+def with_solved_cells(workbook: Workbook, definitions: Definitions) -> Definitions:
+    """Return the definitions with the call that solves for it in each cell that is solved for.
+
+    Cells are solved one after another: one may need the solution of another, and not the other way round as well.
+
+    Raises:
+        DefinitionError: two solutions need each other, or a row solves for a cell that its other cell does not need.
+        FormulaError: a cell that a solution needs cannot be computed.
+    """
+    if all(solve.by in definitions.rewritten for solve in definitions.solves):
+        return definitions
+    left, found = list(definitions.solves), definitions
+    while left:
+        ready = next((each for each in left if not _awaits(workbook, found, each, left)), None)
+        if ready is None:
+            names = " and ".join(repr(each.name) for each in left)
+            hint = "Solve for one of the cells here, and compute the other by a formula"
+            raise DefinitionError(f"{names} need each other's solutions", where=left[0].row, hint=hint)
+        left.remove(ready)
+        found = replace(found, rewritten={**found.rewritten, ready.by: _call(workbook, found, ready)})
+    return found
+
+
+def _awaits(workbook: Workbook, definitions: Definitions, solve: Solve, left: Sequence[Solve]) -> bool:
+    """Whether a solution needs another one that is not there yet."""
+    others = {each.by: each.name for each in left if each is not solve}
+    named = {a.cell: a.name for a in definitions.assumptions if a.cell not in others and a.cell != solve.by}
+    inputs = {**named, **others, solve.by: _BY}
+    resolver = Resolver(workbook, [*inputs], rewritten=definitions.rewritten)
+    cells = [each for each in (solve.cell, solve.to, solve.low, solve.high) if isinstance(each, Cell)]
+    return not others.keys().isdisjoint(lower_cells(resolver, cells, inputs, {}).graph.reached)
+
+
+def _call(workbook: Workbook, definitions: Definitions, solve: Solve) -> ir.Call:
+    unknown = unknown_of(workbook, definitions, solve.cell, solve.to, solve.by, (solve.low, solve.high), solve.row)
+    body = _Body(unknown, solve.root)
+    row = Function(
+        f"solve for {solve.name}",
+        (Anything(repeat=True),),
+        body,
+        Kind.NUMBER,
+        facts=Facts(),
+        home="a row of xlmc_solve",
+    )
+    cells: dict[str, Cell] = {a.name: a.cell for a in definitions.assumptions}
+    arguments = tuple(cells[name] for name in unknown.inputs) or (ir.Number(0.0),)
+    return ir.Call(f"SOLVE.{solve.name}", arguments, given=row)
+
+
+def fault_text(solves: Iterable[Solve], cell: Cell, code: ErrorCode | None) -> str:
+    """Say why a cell that is solved for is an error in a trial; empty for any other cell or error."""
+    for each in solves:
+        if each.by == cell and code is not None and code in (ErrorCode.NA, ErrorCode.NUM):
+            return each.words(code)
+    return ""

@@ -17,10 +17,14 @@ from click.testing import CliRunner
 from openpyxl.worksheet.table import Table
 
 from xlmc.analysis.results.saved import open_run
+from xlmc.analysis.studies.methods import STATISTICS, recommendation, study
 from xlmc.api import load
 from xlmc.cli import xlmc
+from xlmc.montecarlo.model.loading import load as load_model
 from xlmc.montecarlo.statistics import format_estimate
 from xlmc.outputs.live.frames import frame_of
+from xlmc.outputs.methods.methods_json import study_json
+from xlmc.outputs.methods.methods_tables import bounds_table, forecast_table, reference_table
 from xlmc.outputs.summary import summarise, summary_text
 
 FORECASTS = {
@@ -398,3 +402,22 @@ def test_a_screening_judges_texts_and_dates_as_such(studied):
     assert "P(> 2026-06-07)" in text
     assert not re.search(r"\b46[,.]?\d{3}\b", text)
     assert not re.search(r"\de\+", text)
+
+
+def test_methods_write_every_forecast_in_its_form(tmp_path):
+    model = load_model(write_book(tmp_path / "book.xlsx", filtered=True))
+    found = study(model, reference_trials=4_096, trials=1_024, replicates=2, patience=0.2)
+    told = study_json(found)["reference"]["forecasts"]
+    rows = {row[0]: row for row in reference_table(found).rows}
+    assert "Verdict" not in rows
+    assert any(each.endswith("texts: Verdict.") for each in recommendation(found))
+    for name, factor in (("Cost", 1.0), ("Fixed", 1.0), ("Rate", 100.0), ("Speed", 1.0), ("Avoided", 100.0)):
+        mean = told[name]["mean"]
+        assert format_estimate(factor * mean["value"], factor * mean["error"]) in rows[name][2], name
+    day = date(1899, 12, 30) + timedelta(days=int(told["End"]["mean"]["value"]))
+    assert rows["End"][2].startswith(f"{day} ± ")
+    assert rows["Avoided"][3:] == ("–",) * 3
+    assert not any(found.converges("Avoided", each) for each in STATISTICS if each != "mean")
+    written = [cell for each in (bounds_table(found), forecast_table(found)) for row in each.rows for cell in row]
+    assert not any(re.search(r"\b46[,.]?\d{3}\b", cell) for cell in written)
+    assert not any(re.search(r"\de\+", each) for each in recommendation(found))

@@ -10,8 +10,10 @@ import numpy as np
 from xlmc.analysis.studies.methods import STATISTICS, Curve, Method, Runs, Study, need
 from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
 from xlmc.analysis.studies.methods.need import shortfall
+from xlmc.montecarlo.definitions.forms import Form, span_text
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
-from xlmc.montecarlo.statistics import format_estimate
+from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.document.parts import Table
 from xlmc.outputs.summary import share_text
 
@@ -50,9 +52,11 @@ def reference_table(study: Study) -> Table:
     rows = []
     for forecast in study.model.forecasts:
         answer, error = found.answers[forecast.name], found.errors[forecast.name]
-        pairs = ((getattr(answer, each), getattr(error, each)) for each in STATISTICS)
-        # Without an error the number is exact, and two digits of it would be another number.
-        numbers = (format_estimate(value, 0.0) if err == 0.0 else format_of(value, err) for value, err in pairs)
+        form = found.form(forecast.name)
+        numbers = (
+            _of_kind(form, each, getattr(answer, each), getattr(error, each), spread=each == "sd")
+            for each in STATISTICS
+        )
         rows.append((forecast.name, forecast.units, *numbers))
     how = METHODS[found.sampling].name
     title = (
@@ -147,12 +151,16 @@ def forecast_table(study: Study) -> Table:
     rows = []
     for forecast in study.model.forecasts:
         trials = study.ladder[-1]
-        theory = (_number(study.reference.theory(forecast.name, each, trials)) for each in STATISTICS)
+        form = study.reference.form(forecast.name)
+        theory = (
+            _of_kind(form, each, study.reference.theory(forecast.name, each, trials), np.nan, spread=True)
+            for each in STATISTICS
+        )
         rows.append((forecast.name, forecast.units, f"Theory, {trials:,} independent trials", *theory))
         for curve in study.every:
             if curve.answers:
-                found = (curve.lengths[-1].errors[forecast.name, each] for each in STATISTICS)
-                cells = (format_of(each.value, each.error) for each in found)
+                found = {each: curve.lengths[-1].errors[forecast.name, each] for each in STATISTICS}
+                cells = (_of_kind(form, key, each.value, each.error, spread=True) for key, each in found.items())
                 rows.append((forecast.name, forecast.units, curve.method.name, *cells))
     headings = ("Forecast", "Units", "Method", *STATISTICS.values())
     return _table("Root mean square errors of the longest runs, in the forecasts' units", headings, rows, 3)
@@ -165,8 +173,9 @@ def bounds_table(study: Study) -> Table:
     for forecast in study.model.forecasts:
         answer = study.reference.answers[forecast.name]
         found = [curve.ranges.get(forecast.name, (np.nan, np.nan)) for curve in curves]
-        central = _ends(answer.low, answer.high)
-        rows.append((forecast.name, forecast.units, *(_ends(*each) for each in found), central))
+        form = study.reference.form(forecast.name)
+        central = _NONE if form.kind is Kind.YES_NO else _ends(form, answer.low, answer.high)
+        rows.append((forecast.name, forecast.units, *(_ends(form, *each) for each in found), central))
     last = [curve.lengths[-1] for curve in curves]
     rows.append(("Evaluations", "", *(f"{runs.evaluations:,.0f}" for runs in last), ""))
     rows.append(("Time", "", *(seconds_text(runs.seconds) for runs in last), ""))
@@ -181,7 +190,8 @@ def ends_lines(study: Study) -> list[tuple[str, str]]:
     for curve in study.once:
         for (name, end), point in curve.ends.items():
             value = curve.ranges[name][end == "most"]
-            sentence = f"{'Lowest' if end == 'least' else 'Highest'} {name}: {value:.6g}{units[name]}"
+            said = study.reference.form(name).rough(value)
+            sentence = f"{'Lowest' if end == 'least' else 'Highest'} {name}: {said}{units[name]}"
             found.append((sentence, "; ".join(f"{assumption} = {at:.10g}" for assumption, at in point.items())))
     return found
 
@@ -218,20 +228,35 @@ def accepted_text(study: Study) -> str:
     return f"accepted {share_text(study.reference.acceptance)}" if study.model.filters else "no filters"
 
 
-def format_of(value: float, error: float) -> str:
-    """Write a number with its error, and no more digits than that supports; a dash where there is none."""
-    if not np.isfinite(value):
+def _of_kind(form: Form, statistic: str, value: float, error: float, *, spread: bool) -> str:
+    """Write a number as the forecast is written, with its error and no more digits than that supports.
+
+    A dash where there is none, and of a yes/no answer for all but its share.
+
+    Args:
+        form: of the forecast.
+        statistic: attribute of an `Answer`.
+        value: the number.
+        error: its own; nan where it is not known, and two digits are written.
+        spread: whether it is a standard deviation or an error: of dates a span of time.
+    """
+    if not np.isfinite(value) or (form.kind is Kind.YES_NO and statistic != "mean"):
         return _NONE
-    return format_estimate(float(value), float(error)) if np.isfinite(error) and error > 0.0 else _number(value)
+    if np.isfinite(error):
+        found = Estimate(float(value), float(error))
+        return form.spread(found) if spread else form.estimate(found)
+    return span_text(float(value)) if form.kind is Kind.DATE else form.rough(float(f"{value:.2g}"))
 
 
-def _ends(least: float, most: float) -> str:
+def _ends(form: Form, least: float, most: float) -> str:
     """Both to a hundredth, whole from 1,000 on, or to four digits where they are small."""
     if not (np.isfinite(least) and np.isfinite(most)):
         return _NONE
-    size = max(abs(least), abs(most))
-    form = ",.0f" if size >= 1_000.0 else ".2f" if size >= 0.1 else ".4g"
-    return f"{least:{form}} to {most:{form}}"
+    size = form.factor * max(abs(least), abs(most))
+    if form.kind is Kind.DATE or size < 0.1:
+        return " to ".join(form.rough(end if form.kind is Kind.DATE else float(f"{end:.4g}")) for end in (least, most))
+    decimals = 0 if size >= 1_000.0 or form.kind in (Kind.WHOLE, Kind.YES_NO) else 2
+    return " to ".join(form.number(end, decimals) for end in (least, most))
 
 
 def _number(value: float) -> str:

@@ -16,6 +16,8 @@ from xlmc.analysis.studies.methods.quantile_need import QuantileNeed, quantile_n
 from xlmc.errors import SimulationError
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
@@ -66,6 +68,7 @@ class Reference:
         warnings: why its answers must not be used as they are.
         extremes: its lowest and highest accepted trials.
         ordered: forecast -> its accepted values in ascending order, evenly thinned to 1,048,576.
+        forms: forecast -> how its numbers are written.
     """
 
     trials: int
@@ -83,6 +86,16 @@ class Reference:
     heavy: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     extremes: tuple[Extreme, ...] = ()
     ordered: Mapping[str, NDArray[np.float64]] = field(default_factory=dict)
+    forms: Mapping[str, Form] = field(default_factory=dict)
+
+    def form(self, forecast: str) -> Form:
+        """How a forecast's numbers are written."""
+        return self.forms.get(forecast, PLAIN)
+
+    def asks(self, forecast: str, statistic: str) -> bool:
+        """Whether a statistic is asked for: it converges, and of a yes/no answer it is its share."""
+        counted = self.form(forecast).kind is Kind.YES_NO
+        return statistic not in self.heavy.get(forecast, ()) and not (counted and statistic != "mean")
 
     def quantile_need(self, forecast: Forecast, statistic: str, tolerance: float) -> QuantileNeed | None:
         """Return what an end of a forecast's central range needs, as far as the reference knows; else None."""
@@ -155,6 +168,7 @@ def reference_of(model: CompiledModel, trials: int, sampling: str, engine: str, 
         warnings=tuple(run.warnings),
         extremes=extremes_of(run.forecasts, run.trial_index, seed, run.plan),
         ordered={f.name: _thinned(run[f.name].sample.x) for f in model.forecasts},
+        forms={f.name: run.results[f.name].form for f in model.forecasts},
         heavy={f.name: lost for f in model.forecasts if (lost := _lost(run[f.name].sample.x))},
     )
 

@@ -233,7 +233,7 @@ def _shares(errors: Mapping[tuple[str, str], Rms], reference: Reference) -> dict
         parts = [
             errors[name, statistic].value / width
             for name, width in reference.widths.items()
-            if width > 0.0 and statistic not in reference.heavy.get(name, ())
+            if width > 0.0 and reference.asks(name, statistic)
         ]
         known = [part for part in parts if np.isfinite(part)]
         found[statistic] = float(np.sqrt(np.mean(np.square(known)))) if known else np.nan

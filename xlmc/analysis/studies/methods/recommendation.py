@@ -20,6 +20,7 @@ from xlmc.analysis.studies.methods.need import ENGINE_READY, NO_TIME, Choice, Ne
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO, Sampled
 from xlmc.analysis.studies.methods.study import Study
 from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 
 __all__ = ["Parts", "parts_of", "recommendation"]
@@ -48,7 +49,10 @@ _ELSE: Final = "it leaves something out of the formulas"
 def recommendation(study: Study) -> list[str]:
     """Paragraphs: what to use, why, what else would do, and what the others cannot."""
     warned = [f"Warning: {warning}; the answers must not be used as they are." for warning in study.reference.warnings]
-    return [*warned, *_paragraphs(study)]
+    left_out = (
+        [f"Left out, because no method computes a mean of texts: {'; '.join(study.texts)}."] if study.texts else []
+    )
+    return [*warned, *_paragraphs(study), *left_out]
 
 
 def _paragraphs(study: Study) -> list[str]:
@@ -75,6 +79,8 @@ def _accuracy_text(study: Study) -> str:
     text, _, relative = study.accuracy
     what = f"{text} of its 5–95 % range" if relative else f"{text} in its units"
     numbers = "mean, standard deviation and both ends of the central range of every forecast"
+    if any(study.reference.form(name).kind is Kind.YES_NO for name in study.varying):
+        numbers += " (of a yes/no answer its share)"
     sentences = f"Asked for: {numbers}, each known to within {what}, in 95 of 100 runs."
     if relative:
         sentences += (
@@ -85,8 +91,7 @@ def _accuracy_text(study: Study) -> str:
 
 
 def _range(study: Study, name: str) -> str:
-    units = next((f" {f.units}" for f in study.model.forecasts if f.name == name and f.units), "")
-    return f"{name} {study.reference.widths[name]:.3g}{units} wide"
+    return f"{name} {study.amount(name, study.reference.widths[name], 3)} wide"
 
 
 def _heavy_text(study: Study) -> list[str]:
@@ -201,11 +206,10 @@ def _once_text(once: Sequence[tuple[Curve, Shortfall]]) -> list[str]:
 
 
 def _never_text(study: Study, curve: Curve, found: Need) -> str:
-    off = found.floor * study.tolerance(found.forecast)
-    units = next((f" {f.units}" for f in study.model.forecasts if f.name == found.forecast and f.units), "")
+    off = study.amount(found.forecast, found.floor * study.tolerance(found.forecast))
     return (
         f"{curve.method.name} never reaches it: the {statistic_words(found.statistic)} of {found.forecast} stays off "
-        f"by about {rounded_text(off)}{units}, {rounded_text(found.floor)} times what was asked for, however many "
+        f"by about {off}, {rounded_text(found.floor)} times what was asked for, however many "
         "trials it runs."
     )
 
@@ -224,12 +228,13 @@ def _unknown_text(curve: Curve, found: Need) -> str:
 
 
 def _undecided_text(study: Study, curve: Curve, found: Shortfall) -> str:
-    units = next((f" {f.units}" for f in study.model.forecasts if f.name == found.forecast and f.units), "")
+    off, own, wanted = (
+        study.amount(found.forecast, each) for each in (abs(found.error), found.own, study.tolerance(found.forecast))
+    )
     return (
         f"This reference cannot tell whether {curve.method.name} is near enough: it is off by "
-        f"{rounded_text(abs(found.error))} ± {rounded_text(found.own)}{units} in the "
-        f"{statistic_words(found.statistic)} of {found.forecast}, where "
-        f"{rounded_text(study.tolerance(found.forecast))}{units} was asked for. More --reference-trials can."
+        f"{off} ± {own} in the {statistic_words(found.statistic)} of {found.forecast}, where {wanted} was asked for. "
+        "More --reference-trials can."
     )
 
 
@@ -283,11 +288,10 @@ def _missed_text(study: Study, curve: Curve, found: Shortfall) -> str:
     """Return what a method misses by the most, and why, in a sentence or two."""
     if not np.isfinite(found.times):
         return f"{curve.method.name} has no number for {found.forecast}."
-    units = next((f" {f.units}" for f in study.model.forecasts if f.name == found.forecast and f.units), "")
     share = abs(found.error) / study.reference.widths[found.forecast]
     text = (
         f"{curve.method.name} misses the {statistic_words(found.statistic)} of {found.forecast} by "
-        f"{rounded_text(abs(found.error))}{units}, {percent_words(share)} of its 5–95 % range"
+        f"{study.amount(found.forecast, abs(found.error))}, {percent_words(share)} of its 5–95 % range"
     )
     why = _LEFT_OUT.get(curve.method.key, _ELSE)
     rejected = 1.0 - study.reference.acceptance.value
@@ -300,12 +304,16 @@ def _missed_text(study: Study, curve: Curve, found: Shortfall) -> str:
             f"{text}. {seen[0].upper()}{seen[1:]}; and {why}. No answer without filters is known that would tell the "
             "two parts from each other."
         )
-    filters = _part(parts.filters, parts, units, f"because {seen}", "for the filters, which it does not see")
-    formulas = _part(parts.formulas, parts, units, f"because {why}", "for what it leaves out of the formulas")
+
+    def part(value: float, because: str, otherwise: str) -> str:
+        return _part(study, found.forecast, value, parts, because, otherwise)
+
+    filters = part(parts.filters, f"because {seen}", "for the filters, which it does not see")
+    formulas = part(parts.formulas, f"because {why}", "for what it leaves out of the formulas")
     return f"{text}. Measured apart: {filters}; {formulas}."
 
 
-def _part(value: float, parts: Parts, units: str, because: str, otherwise: str) -> str:
+def _part(study: Study, forecast: str, value: float, parts: Parts, because: str, otherwise: str) -> str:
     if abs(value) <= _BEYOND * parts.error:
-        return f"no more than chance (±{rounded_text(_BEYOND * parts.error)}{units}) {otherwise}"
-    return f"{'+' if value > 0.0 else '−'}{rounded_text(abs(value))}{units} {because}"
+        return f"no more than chance (±{study.amount(forecast, _BEYOND * parts.error)}) {otherwise}"
+    return f"{'+' if value > 0.0 else '−'}{study.amount(forecast, abs(value))} {because}"

@@ -27,6 +27,8 @@ from xlmc.analysis.studies.methods.sampled import ENGINE_VARIANTS, MONTE_CARLO, 
 from xlmc.analysis.studies.methods.surrogate import Surrogate
 from xlmc.errors import FormulaError, SimulationError
 from xlmc.montecarlo.definitions.amounts import as_tolerance
+from xlmc.montecarlo.definitions.forms import span_text
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "quick_settings", "study"]
@@ -88,6 +90,7 @@ class Study:
         curves: the methods that draw.
         engines: the same trials as Monte Carlo's, computed by other engines.
         absent: method -> why it could not be used.
+        texts: the forecasts whose answers are texts, which are left out.
     """
 
     model: CompiledModel
@@ -101,6 +104,7 @@ class Study:
     curves: tuple[Curve, ...]
     engines: tuple[Curve, ...]
     absent: Mapping[str, str]
+    texts: tuple[str, ...] = ()
 
     @property
     def every(self) -> tuple[Curve, ...]:
@@ -112,8 +116,18 @@ class Study:
         return tuple(name for name, width in self.reference.widths.items() if width > 0.0)
 
     def converges(self, forecast: str, statistic: str) -> bool:
-        """Whether a statistic of a forecast converges: the forecast varies, and its tail is not too heavy."""
-        return forecast in self.varying and statistic not in self.reference.heavy.get(forecast, ())
+        """Whether a statistic of a forecast is asked for and converges: the forecast varies, its tail is not too
+        heavy, and of a yes/no answer it is its share.
+        """
+        return forecast in self.varying and self.reference.asks(forecast, statistic)
+
+    def amount(self, forecast: str, value: float, digits: int = 2) -> str:
+        """Write an error or a width of a forecast without its own error, in so many digits, with its units."""
+        form = self.reference.form(forecast)
+        units = next((f" {f.units}" for f in self.model.forecasts if f.name == forecast and f.units), "")
+        if form.kind is Kind.DATE:
+            return span_text(value)
+        return f"{form.rough(float(f'{value:.{digits}g}'))}{units}"
 
     def tolerance(self, forecast: str) -> float:
         """Return the error asked for, in the forecast's units."""
@@ -150,6 +164,7 @@ def study(
         SimulationError: an argument is out of its range, or the reference accepts too few trials.
     """
     wanted = (accuracy.strip(), *as_tolerance(accuracy))
+    texts = tuple(model.forecasts[number].name for number in model.categories)
     model = _without_texts(model)
     own = model.definitions.settings.seed if seed is None else seed
     _check(own, replicates, trials, reference_trials, model)
@@ -175,7 +190,7 @@ def study(
             engines += measuring.time_slow(variant, next(curve for curve in curves if curve.method is MONTE_CARLO))
     most = replicates or REPLICATES
     return Study(
-        model, own, wanted, reference, unfiltered, ladder, most, once, curves, engines, measuring.absent
+        model, own, wanted, reference, unfiltered, ladder, most, once, curves, engines, measuring.absent, texts
     )  # fmt: skip
 
 

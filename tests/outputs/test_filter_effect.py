@@ -3,7 +3,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from xlmc.outputs.filter_effect import filter_effect, marginal
+from xlmc.outputs import filter_effect as module
+from xlmc.outputs.filter_effect import DRAWN, filter_effect, filter_effect_of, marginal, shapes, shapes_of
 
 RANDOM = np.random.default_rng(11)
 
@@ -46,3 +47,48 @@ def test_a_single_accepted_trial_has_a_shift_without_an_error():
     found = filter_effect(np.array([1.0, 2.0, 3.0]), np.array([3.0]))
     assert (found.shift.value, found.shift.error) == (pytest.approx(1.0), None)
     assert np.isnan(found.narrowing.value)
+
+
+def test_without_filters_each_assumption_is_sorted_once(make, monkeypatch, package_of):
+    sorted_columns = []
+    monkeypatch.setattr(module, "marginal", lambda *given: sorted_columns.append(given) or marginal(*given))
+    assumptions = [make.uniform("a", "A1", 0.0, 1.0), make.uniform("b", "A2", 0.0, 1.0)]
+    run = make.simulate({"A1": 0.5, "A2": 0.5, "B1": "=A1+A2"}, assumptions, [make.forecast("sum", "B1")])
+    package_of(run)
+    assert len(sorted_columns) == 2
+    assert filter_effect_of(run, "a").accepted.mean == filter_effect_of(run, "a").prior.mean
+    assert len(sorted_columns) == 3
+
+
+@pytest.mark.parametrize("weighted", [False, True])
+@pytest.mark.parametrize(
+    "draw",
+    [
+        lambda n: RANDOM.normal(5.0, 2.0, n),
+        lambda n: RANDOM.integers(0, 25, n) / 24.0,
+        lambda n: np.round(RANDOM.uniform(0.0, 3.0, n), 1),
+        lambda n: 1e9 + RANDOM.uniform(0.0, 1e-3, n),
+        lambda n: np.where(RANDOM.random(n) < 0.1, np.nan, RANDOM.lognormal(0.0, 2.0, n)),
+    ],
+    ids=["normal", "on the edges", "rounded", "far from 0", "tailed, some without a number"],
+)
+def test_shapes_count_each_draw_in_the_bin_that_holds_it(draw, weighted):
+    accepted = draw(2_000)
+    prior, weights = np.concatenate([accepted[:500], draw(1_000)]), RANDOM.random(2_000) if weighted else None
+    found = shapes(prior, accepted, weights)
+    known = ~np.isnan(accepted)
+    w = np.ones(known.sum()) if weights is None else weights[known]
+    counted, last = [], found.edges.size - 2
+    for index, (low, high) in enumerate(zip(found.edges, found.edges[1:], strict=False)):
+        inside = (accepted[known] >= low) & ((accepted[known] < high) | ((index == last) & (accepted[known] == high)))
+        counted.append(w[inside].sum() / w.sum())
+    assert found.accepted == pytest.approx(counted, rel=1e-12)
+
+
+def test_shapes_are_of_the_first_assumptions_and_made_once(make, monkeypatch):
+    count = DRAWN + 2
+    cells = {f"A{k}": 0.5 for k in range(1, count + 1)} | {"B1": f"=SUM(A1:A{count})"}
+    assumptions = [make.uniform(f"a{k}", f"A{k}", 0.0, 1.0) for k in range(1, count + 1)]
+    run = make.simulate(cells, assumptions, [make.forecast("sum", "B1")], trials=200)
+    assert shapes_of(run, f"a{DRAWN}") is shapes_of(run, f"a{DRAWN}") is not None
+    assert shapes_of(run, f"a{DRAWN + 1}") is None

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING, Final
 from weakref import WeakKeyDictionary
 
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = [
+    "DRAWN",
     "PERCENTS",
     "FilterEffect",
     "Marginal",
@@ -37,11 +39,15 @@ __all__ = [
 
 PERCENTS = (5.0, 50.0, 95.0)
 
+DRAWN: Final = 100
+"""The most assumptions whose shapes are drawn: more would make files slow to write and to open."""
+
 _BINS = 24
 _LONG = 1.3
 """If all draws cover more than this multiple of their middle 99.6 %, the chart leaves out their tails."""
 
 _FOUND: Final[WeakKeyDictionary[RunResult, dict[str, FilterEffect]]] = WeakKeyDictionary()
+_SHAPES: Final[WeakKeyDictionary[RunResult, dict[str, Shapes | None]]] = WeakKeyDictionary()
 """By assumption. Sheets, page, document and JSON of one run want the same."""
 
 
@@ -55,21 +61,41 @@ class Marginal:
     percentiles: Mapping[float, Estimate]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class FilterEffect:
-    """An assumption before and after filtering.
+    """An assumption before and after filtering, each sorted when it is first asked for: without filters one is enough.
 
     Attributes:
-        prior: before filtering.
-        accepted: after it.
-        shift: of the mean, in standard deviations before filtering.
-        narrowing: the accepted standard deviation over that before filtering.
+        prior_draws: `(n,)` before filtering.
+        accepted_draws: `(m,)` after it.
+        replicate: `(m,)` of the accepted draws; None if the trials themselves are independent.
+        weights: `(m,)` of the accepted draws; None if they count alike.
     """
 
-    prior: Marginal
-    accepted: Marginal
-    shift: Estimate
-    narrowing: Estimate
+    prior_draws: NDArray[np.float64]
+    accepted_draws: NDArray[np.float64]
+    replicate: NDArray[np.int64] | None = None
+    weights: NDArray[np.float64] | None = None
+
+    @cached_property
+    def prior(self) -> Marginal:
+        """The draws before filtering."""
+        return marginal(self.prior_draws)
+
+    @cached_property
+    def accepted(self) -> Marginal:
+        """The accepted draws."""
+        return marginal(self.accepted_draws, self.replicate, self.weights)
+
+    @property
+    def shift(self) -> Estimate:
+        """How far the mean moved, in standard deviations before filtering."""
+        return _shift(self.prior, self.accepted)
+
+    @property
+    def narrowing(self) -> Estimate:
+        """The accepted standard deviation over that before filtering."""
+        return _narrowing(self.prior, self.accepted)
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,15 +118,18 @@ def shapes(
 ) -> Shapes | None:
     """Return the shapes of `(n,)` draws before filtering and of `(m,)` accepted ones; None if they are one value."""
     before, after = numbers(prior), numbers(accepted)
-    w = np.ones(after.size) if weights is None else weights[~np.isnan(accepted)]
-    if not before.size or not after.size or not w.any():
+    w = None if weights is None else weights[~np.isnan(accepted)]
+    if not before.size or not after.size or (w is not None and not w.any()):
         return None
     low, high = _shown(before)
-    if not (math.isfinite(low) and math.isfinite(high) and high > low):
+    if not (math.isfinite(high - low) and high > low):
         return None
-    edges = np.linspace(low, high, _BINS + 1)
-    shares = np.histogram(after, edges, weights=w)[0] / w.sum()
-    return Shapes(edges, np.histogram(before, edges)[0] / before.size, shares)
+    counted, edges = np.histogram(before, _BINS, (low, high))  # by a division: edges given would sort the draws
+    if w is None:
+        shares = np.histogram(after, _BINS, (low, high))[0] / after.size
+    else:
+        shares = np.histogram(after, edges, weights=w)[0] / w.sum()
+    return Shapes(edges, counted / before.size, shares)
 
 
 def _shown(draws: NDArray[np.float64]) -> tuple[float, float]:
@@ -144,11 +173,19 @@ def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | N
 
 
 def shapes_of(simulation: RunResult, assumption: str) -> Shapes | None:
-    """Return the shapes of one of a run's assumptions; None if it is not drawn, or is one value."""
+    """Return the shapes of one of a run's assumptions; None if it is not drawn, is one value, or is not among the first
+    `DRAWN` of the workbook.
+    """
     prior, accepted = simulation.prior.get(assumption), simulation.inputs.get(assumption)
     if prior is None or accepted is None:
         return None
-    return shapes(prior, accepted, None if simulation.weighting is None else simulation.weighting.weights)
+    if all(each.name != assumption for each in simulation.model.assumptions[:DRAWN]):
+        return None
+    found = _SHAPES.setdefault(simulation, {})
+    if assumption not in found:
+        weighting = simulation.weighting
+        found[assumption] = shapes(prior, accepted, None if weighting is None else weighting.weights)
+    return found[assumption]
 
 
 def filter_effect(
@@ -163,8 +200,7 @@ def filter_effect(
     others. With the `(m,)` replicates of the accepted draws, those of the accepted come from the replicates; with their
     `(m,)` weights, from the effective sample size.
     """
-    before, after = marginal(prior), marginal(accepted, replicate, weights)
-    return FilterEffect(before, after, _shift(before, after), _narrowing(before, after))
+    return FilterEffect(prior, accepted, replicate, weights)
 
 
 def _shift(before: Marginal, after: Marginal) -> Estimate:

@@ -141,3 +141,11 @@ def test_trials_on_disk_give_the_same_table(make, monkeypatch):
 def test_forecasts_share_the_page(forecasts, most):
     assert most_values(forecasts) == most
     assert forecasts * most <= ALL_VALUES
+
+
+def test_only_the_first_forecasts_have_fitted_curves(make, monkeypatch):
+    monkeypatch.setattr("xlmc.outputs.page.payload.MOST_FITTED", 2)
+    cells = {"A1": 0.5, "B1": "=A1", "B2": "=A1*2", "B3": "=A1*3"}
+    forecasts = [make.forecast(f"answer {k}", f"B{k}") for k in (1, 2, 3)]
+    run = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0)], forecasts, trials=500)
+    assert [bool(each["fits"]) for each in payload(run, figures_of(run))["forecasts"]] == [True, True, False]

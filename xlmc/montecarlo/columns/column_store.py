@@ -154,7 +154,7 @@ def _naming_folder(path: Path | None) -> Iterator[None]:
         raise SimulationError(message, where=where, hint=hint) from error
 
 
-IN_MEMORY: Final = 1 << 29
+IN_MEMORY: Final = 1 << 27
 """Bytes of all columns of a store together that stay in memory."""
 
 WRITTEN: Final = 1 << 24

@@ -57,6 +57,9 @@ ALL_VALUES = 50_000
 MOST_VALUES, _FEWEST = 20_000, 200
 """Values of one forecast."""
 
+MOST_FITTED = 20
+"""Forecasts, the first ones, that distributions are fitted to: each takes some hundredths of a second."""
+
 Floats = NDArray[np.float64]
 
 Counts = NDArray[np.int64]
@@ -75,7 +78,11 @@ def payload(simulation: RunResult, figures: Sequence[Figure], beside: RunResult 
     return {
         "z": t_quantile(math.inf, CONFIDENCE),
         "forecasts": [
-            {**forecast_payload(simulation, each, most), "second": _second(each, beside, most)} for each in figures
+            {
+                **forecast_payload(simulation, each, most, fits=number < MOST_FITTED),
+                "second": _second(each, beside, most),
+            }
+            for number, each in enumerate(figures)
         ],
         "overlays": overlays_of(figures),
     }

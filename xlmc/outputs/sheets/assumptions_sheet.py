@@ -15,7 +15,7 @@ import numpy as np
 from xlmc.analysis.results.record.definition_tables import correlations_met
 from xlmc.analysis.results.statements.in_words import distribution_text, status
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.outputs.filter_effect import FilterEffect, Marginal, filter_effect_of, shapes_of
+from xlmc.outputs.filter_effect import DRAWN, FilterEffect, Marginal, filter_effect_of, shapes_of
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.curves_sheet import SHARE
@@ -46,8 +46,6 @@ _ROW = 15.0
 _GAP = 6.0
 _SIZE = (98, 62)
 """The size of a small chart in pixels: within the cells of three lines."""
-_DRAWN = 100
-"""The most assumptions whose shapes are drawn: more would make the file slow to open."""
 _READABLE = _SHAPE
 """The column that paragraphs reach to."""
 
@@ -118,7 +116,7 @@ def write_assumptions(page: Page, book: Workbook, simulation: RunResult, curves:
 def _draw_shapes(page: Page, book: Workbook, simulation: RunResult, curves: Curves) -> None:
     """Draw how often each assumption has each value, beside its lines."""
     drawn = []
-    for index, assumption in enumerate(simulation.model.assumptions[:_DRAWN]):
+    for index, assumption in enumerate(simulation.model.assumptions[:DRAWN]):
         found = shapes_of(simulation, assumption.name)
         if found is not None:
             drawn.append((HEADER + 1 + _LINES * index, assumption.name, found))

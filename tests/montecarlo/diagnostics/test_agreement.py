@@ -97,6 +97,10 @@ def test_a_sharp_reading_in_the_middle_is_not_strained_though_it_keeps_hardly_a_
         ("C1", 1.0, {"error": "at least"}, Verdict.INDEPENDENT),
         ("C1", 2.8, {"error": "at least"}, Verdict.STRAINED),
         ("C1", 9.0, {"error": "at least"}, Verdict.INCONSISTENT),
+        ("C1", 1.0, {"error": "at least", "std_dev": 0.1}, Verdict.INDEPENDENT),
+        ("C1", 9.0, {"error": "at least", "std_dev": 0.1}, Verdict.INCONSISTENT),
+        ("C1", -9.0, {"error": "at least", "std_dev": 0.1}, Verdict.INDEPENDENT),
+        ("C1", -9.0, {"error": "at most", "std_dev": 0.1}, Verdict.INCONSISTENT),
         ("C1", 9.0, {"error": "at most"}, Verdict.INDEPENDENT),
     ],
 )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 from simulated import simulated
 
 from xlmc.errors import DefinitionError
@@ -49,6 +50,40 @@ def test_a_lognormal_error_gives_the_known_posterior(book):
     run = simulated(book(cells, {"x": X}, {"log": "A1"}, evidence={"damage": reading}), trials=200_000)
     assert close(run["log"].mean, 0.5)  # x = 2·ln m
     assert close(run["log"].standard_deviation, 0.5**0.5)
+
+
+CENSORED = {
+    "at least": ({"reading": 1, "error": "at least", "std_dev": 0.5}, 1.0),
+    "at most": ({"reading": -1, "error": "at most", "std_dev": 0.5}, -1.0),
+}
+
+
+@pytest.mark.parametrize("engine", ["numpy", "jit"])
+@pytest.mark.parametrize(("reading", "side"), CENSORED.values(), ids=CENSORED)
+def test_a_reading_that_was_cut_off_gives_the_known_posterior(book, reading, side, engine):
+    """X ~ N(0, 1), and X + N(0, 0.5) lies beyond 1: the share is Φ(-1/√1.25), the mean φ(1/√1.25)/(√1.25·share)."""
+    run = simulated(
+        book(CELLS, OTHERS, FORECASTS, evidence={"EDR": {"cell": "B1", **reading}}), trials=400_000, engine=engine
+    )
+    at = 1 / np.sqrt(1.25)
+    assert close(run.acceptance, norm.sf(at))
+    assert close(run["y"].mean, side * norm.pdf(at) / (np.sqrt(1.25) * norm.sf(at)))
+
+
+def test_a_cut_off_reading_gives_the_same_by_weights(book):
+    reading = {"cell": "B1", **CENSORED["at least"][0]}
+    run = simulated(book(CELLS, OTHERS, FORECASTS, evidence={"EDR": reading}), trials=200_000, evidence="weights")
+    at = 1 / np.sqrt(1.25)
+    assert run.accepted == 200_000
+    assert run.weighting.mean == pytest.approx(norm.sf(at), rel=0.01)
+    assert close(run["y"].mean, norm.pdf(at) / (np.sqrt(1.25) * norm.sf(at)))
+
+
+def test_a_cut_off_reading_without_an_error_is_a_limit(book):
+    zero, none = ({"cell": "B1", "reading": 1, "error": "at least", **error} for error in ({"std_dev": 0}, {}))
+    runs = [simulated(book(CELLS, OTHERS, FORECASTS, evidence={"EDR": each}), trials=4_000) for each in (zero, none)]
+    assert np.array_equal(runs[0].trial_index, runs[1].trial_index)
+    assert runs[0].forecasts["y"].min() >= 1
 
 
 def test_evidence_moves_no_draw_and_every_engine_keeps_the_same_trials(book, normal):

@@ -107,24 +107,43 @@ class Within:
 class Bell:
     """A reading with a normal error: z = (R - m)/σ; or with a lognormal one: z = ln(R/m)/σ.
 
+    One-sided evidence is a reading that was cut off (censored): what would have been read, m + σε, lies on one side of
+    R, and nothing more is known. It keeps a trial with the chance of that, Φ(-z) or Φ(z).
+
     Attributes:
         reading: R.
         sigma: σ, in the units of the reading, or of the logarithm.
+        logarithmic: whether the error is lognormal.
+        sides: whether m may be too low, too high, as in `Within`.
     """
 
     reading: float
     sigma: float
     logarithmic: bool = False
+    sides: tuple[bool, bool] = (True, True)
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether it bounds m on one side alone."""
+        return not all(self.sides)
 
     def z(self, m: Floats) -> Floats:
-        """`(n,)`; infinite where m has no logarithm."""
-        if not self.logarithmic:
-            return (self.reading - m) / self.sigma
-        with np.errstate(divide="ignore", invalid="ignore"):
-            return np.where(m > 0.0, np.log(self.reading / m) / self.sigma, np.inf)
+        """`(n,)`; infinite where m has no logarithm; 0 where one-sided evidence is beyond doubt on its side."""
+        if self.logarithmic:
+            with np.errstate(divide="ignore", invalid="ignore"):
+                return np.where(m > 0.0, np.log(self.reading / m) / self.sigma, np.inf)
+        low, high = (None if side else 0.0 for side in self.sides)
+        z = (self.reading - m) / self.sigma
+        return np.clip(z, high, low) if self.one_sided else z
 
     def log_weight(self, m: Floats) -> Floats:
-        """`(n,)` -z²/2, the logarithm of the chance that a trial is kept."""
+        """`(n,)` the logarithm of the chance that a trial is kept: -z²/2, or that of a normal tail."""
+        if self.one_sided:
+            from scipy.special import log_ndtr
+
+            z = (self.reading - m) / self.sigma
+            logs = log_ndtr(-z if self.sides[0] else z)
+            return np.where(logs >= -0.5 * _FARTHEST**2, logs, -np.inf)
         z = self.z(m)
         with np.errstate(over="ignore"):
             return np.where(np.abs(z) <= _FARTHEST, -0.5 * z * z, -np.inf)
@@ -135,14 +154,18 @@ class Bell:
 
         return np.asarray(ndtr(self.z(m)))
 
-    def tree_of_square(self, cell: Cell) -> ir.Expression:
-        """z² as a formula of the model's cell."""
+    def tree_of_chance(self, cell: Cell) -> ir.Expression:
+        """Write the chance that a trial is kept as a formula of the model's cell."""
         m, reading = ir.Binary("+", cell, ir.Number(0.0)), ir.Number(self.reading)
+        if self.one_sided:
+            inside = ir.Binary("-", m, reading) if self.sides[0] else ir.Binary("-", reading, m)
+            z = ir.Binary("/", inside, ir.Number(self.sigma))
+            return ir.Call("NORM.S.DIST", (z, ir.Logical(value=True)))
         apart: ir.Expression = ir.Binary("-", reading, m)
         if self.logarithmic:
             apart = ir.Call("LN", (ir.Binary("/", reading, m),))
         z = ir.Binary("/", apart, ir.Number(self.sigma))
-        return ir.Binary("*", z, z)
+        return ir.Call("EXP", (ir.Binary("*", ir.Number(-0.5), ir.Binary("*", z, z)),))
 
 
 Law = Within | Bell
@@ -205,16 +228,22 @@ class Evidence:
                 return Bell(reading, given.get("std_dev", share), logarithmic=True)
             case "uniform":
                 return Within(reading, 0.0, given.get("plus_minus", share * abs(reading)))
-            case "at least":
-                return Within(reading, share, width, (True, False))
-            case "at most":
-                return Within(reading, share, width, (False, True))
+            case "at least" | "at most":
+                sides = (self.error == "at least", self.error == "at most")
+                if given.get("std_dev"):
+                    return Bell(reading, given["std_dev"], sides=sides)
+                return Within(reading, share, width, sides)
         return Within(reading, share, width)
+
+    @property
+    def is_censored(self) -> bool:
+        """Whether it is one-sided with a normal error: a reading that was cut off."""
+        return self.error in ("at least", "at most") and "std_dev" in self.sizes
 
     @property
     def bell(self) -> Bell | None:
         """The law of the reading's error; None if the evidence is a limit."""
-        law = self.law if self.error in ("normal", "lognormal") else None
+        law = self.law if self.error in ("normal", "lognormal") or self.is_censored else None
         return law if isinstance(law, Bell) else None
 
     @property

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo import statistics
-from xlmc.montecarlo.definitions.evidence import Bell, Within
+from xlmc.montecarlo.definitions.evidence import Bell
 from xlmc.montecarlo.diagnostics.evidence_trials import EvidenceTrials, evidence_trials
 from xlmc.montecarlo.model.plain_words import list_of
 from xlmc.montecarlo.statistics import Estimate, Sample
@@ -376,7 +376,7 @@ def _tail(law: Law, m: Floats, others: Floats, given: Estimate) -> float:
     weights = others[others > 0.0]
     if not weights.size:
         return math.nan
-    if isinstance(law, Within) and law.one_sided:
+    if law.one_sided:
         return given.value
     reached = law.reached(m[others > 0.0])
     below = float(np.sum(weights * reached) / weights.sum())

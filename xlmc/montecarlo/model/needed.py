@@ -209,19 +209,18 @@ def filter_condition(filter_: Filter, *, certain: bool = False) -> ir.Expression
 
 
 def accepted_by_chance(bell: Bell, cell: Cell, chance: Cell | None) -> ir.Expression:
-    """Whether a trial is kept, with probability exp(-z²/2): the quantity is z standard deviations from the reading.
+    """Whether a trial is kept, with the chance of its reading: exp(-z²/2), z standard deviations from it; or Φ(±z).
 
     An item of evidence has a uniform number U of its own, from a random stream of its own, and keeps the trial where
-    U ≤ exp(-z²/2). What is kept are then exact draws, of equal weight, from the inputs given the reading (rejection
-    sampling).
+    U is not above that chance. What is kept are then exact draws, of equal weight, from the inputs given the reading
+    (rejection sampling).
 
     Args:
         bell: the error of the reading.
         cell: the model's quantity.
         chance: a uniform number; None to keep every trial whose probability is above 0.
     """
-    exponent = ir.Binary("*", ir.Number(-0.5), bell.tree_of_square(cell))
-    probability = ir.Call("EXP", (exponent,))
+    probability = bell.tree_of_chance(cell)
     accepted: ir.Expression = ir.Binary(">", probability, ir.Number(0.0), all_bits=True)
     if chance is not None:
         accepted = ir.Binary("<=", chance, probability, all_bits=True)

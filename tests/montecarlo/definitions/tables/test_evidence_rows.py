@@ -28,6 +28,8 @@ LAWS = [
     (("At least",), Within(12.0, 0.0, 0.0, (True, False))),
     (("at most", 1), Within(12.0, 0.0, 1.0, (False, True))),
     (("at least", None, None, 10, 0.3), Within(12.0, 0.1, 0.3, (True, False))),
+    (("at least", None, 0.5, None, None), Bell(12.0, 0.5, sides=(True, False))),
+    (("at most", None, 0.5, None, None), Bell(12.0, 0.5, sides=(False, True))),
 ]
 
 

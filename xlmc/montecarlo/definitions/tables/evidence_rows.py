@@ -41,8 +41,8 @@ _TAKES: Final[Mapping[str, tuple[tuple[str, ...], ...]]] = {
     "instrument": (("percent",), ("resolution",), ("percent", "resolution")),
     "normal": (("std_dev",), ("percent",)),
     "lognormal": (("std_dev",), ("percent",)),
-    "at least": ((), ("plus_minus",), ("percent",), ("resolution",), ("percent", "resolution")),
-    "at most": ((), ("plus_minus",), ("percent",), ("resolution",), ("percent", "resolution")),
+    "at least": ((), ("plus_minus",), ("std_dev",), ("percent",), ("resolution",), ("percent", "resolution")),
+    "at most": ((), ("plus_minus",), ("std_dev",), ("percent",), ("resolution",), ("percent", "resolution")),
 }
 """Error -> the sets of sizes that it may be given by."""
 
@@ -51,8 +51,8 @@ _HOW: Final[Mapping[str, str]] = {
     "instrument": "Fill in Percent, of what is measured, or Resolution, in the units of the reading, or both",
     "normal": "Fill in Std dev, in the units of the reading, or Percent, of the reading",
     "lognormal": "Fill in Std dev, of the logarithm, or Percent: 20 is a Std dev of 0.2",
-    "at least": "Leave the error blank, or fill in Plus or minus, or Percent and Resolution",
-    "at most": "Leave the error blank, or fill in Plus or minus, or Percent and Resolution",
+    "at least": "Leave the error blank, or fill in Plus or minus, or Std dev, or Percent and Resolution",
+    "at most": "Leave the error blank, or fill in Plus or minus, or Std dev, or Percent and Resolution",
 }
 
 _ALSO: Final = {"limits": "uniform", "rectangular": "uniform", "gaussian": "normal", "lognorm": "lognormal"}

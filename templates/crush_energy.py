@@ -23,6 +23,7 @@ from templates.other_readings import cut_off_delta_v, recorded_delta_v, seen_spe
 from templates.plan_view import mark
 from templates.restitution import RESTITUTION, restitution_input
 from templates.speed_answer import speed_answer
+from templates.stiffness_tests import STIFFNESS_TESTS
 from templates.units import CONVERSIONS, GRAVITY, MPH, RADIUS_OF_GYRATION
 from templates.vehicles import FIRST, SECOND, for_both, vehicle
 
@@ -238,17 +239,71 @@ _LEVER = tuple(
     )
 )
 
+_LINES = tuple(
+    Input(
+        f"line_{j}",
+        "",
+        f"{vehicle(j)} b0 and b1 from a straight line through the tests of sheet Stiffness: 1 = yes",
+        "",
+        None,
+        "Optional. For three tests or more at different speeds; blank: b0 is that of the assumptions, in each trial",
+        choices=(1,),
+    )
+    for j in (1, 2)
+)
+
 _LENGTH = "[in_per_ft|cm_per_m]"
 
 _STIFFNESS = (
     Equation("[m_{j}|]", "m{j}", "{who} mass", "lb·s²/ft", "w_{j}/g", "weight / g"),
-    Equation("[m_test_{j}|]", "mtest,{j}", "{who} mass in the crash test", "lb·s²/ft", "w_test_{j}/g", "weight / g"),
+    Equation(
+        "[w|m]_used_{j}",
+        "[w|m]used,{j}",
+        "{who} [weight|mass] of the tests that is used",
+        "[lb|kg]",
+        "IF(tests_{j}>0,[w|m]_tests_{j},[w|m]_test_{j})",
+        "sheet Stiffness, or Inputs",
+        number_format="#,##0",
+    ),
+    Equation("[m_used_{j}|]", "mused,{j}", "{who} mass of the tests", "lb·s²/ft", "w_used_{j}/g", "weight / g"),
+    Equation(
+        "L_used_{j}",
+        "Lused,{j}",
+        "{who} width of their crush that is used",
+        "[in|cm]",
+        "IF(tests_{j}>0,L_tests_{j},L_test_{j})",
+        "sheet Stiffness, or Inputs",
+        number_format="0.0",
+    ),
+    Equation(
+        "b1_used_{j}",
+        "b1,used,{j}",
+        "{who} slope b1 that is used",
+        "[mph/in|(km/h)/cm]",
+        "IF(tests_{j}=0,b1_{j},IF(lined_{j}=1,pass_{j}_5+line_sd_{j}/SQRT(Sxx_{j})*scatter_slope_{j},"
+        "b1_tests_{j}+b1_sd_{j}*SQRT(1+1/MAX(tests_{j},1))*scatter_{j}))",
+        "mean ± s·√(1 + 1/n)·t",
+        "<The next vehicle of a kind differs from the mean of n tests by their scatter s and the error of that mean; "
+        "from few tests in Student's t.|>",
+        number_format="0.0000",
+    ),
+    Equation(
+        "b0_used_{j}",
+        "b0,used,{j}",
+        "{who} no-damage speed b0 that is used",
+        "[mph|km/h]",
+        "IF(lined_{j}=1,level_{j}+line_sd_{j}*SQRT(1+1/MAX(tests_{j},1))*scatter_{j}-b1_used_{j}*x_tests_{j},b0_{j})",
+        "input, or of the line",
+        "<Of the line: its speed at the mean crush less b1 times that, so that a high b1 goes with a low b0.|>",
+        number_format="0.000",
+    ),
     Equation(
         "A_{j}",
         "A{j}",
         "{who} force at which crush begins, per width",
         "[lb/in|N/cm]",
-        f"IF(B_given_{{j}}>0,A_given_{{j}},{_LENGTH}*m_test_{{j}}*(b0_{{j}}/({MPH}))*(b1_{{j}}/({MPH}))/L_test_{{j}})",
+        f"IF(B_given_{{j}}>0,A_given_{{j}},{_LENGTH}*m_used_{{j}}*(b0_used_{{j}}/({MPH}))*(b1_used_{{j}}/({MPH}))"
+        "/L_used_{j})",
         "A = m b0 b1 / L",
         "<A and B come from one test and go together: b0 and b1 are drawn, not A and B.|>",
         number_format="0.00",
@@ -258,8 +313,27 @@ _STIFFNESS = (
         "B{j}",
         "{who} stiffness, per width",
         "[lb/in²|N/cm²]",
-        f"IF(B_given_{{j}}>0,B_given_{{j}},{_LENGTH}*m_test_{{j}}*(b1_{{j}}/({MPH}))^2/L_test_{{j}})",
+        f"IF(B_given_{{j}}>0,B_given_{{j}},{_LENGTH}*m_used_{{j}}*(b1_used_{{j}}/({MPH}))^2/L_used_{{j}})",
         "B = m b1² / L",
+        number_format="0.00",
+    ),
+    Equation(
+        "G_{j}",
+        "G{j}",
+        "{who} energy per width before crush begins",
+        "[lb|N]",
+        "A_{j}^2/(2*B_{j})",
+        "G = A²/(2B)",
+        number_format="#,##0.0",
+    ),
+    Equation(
+        "least_stiff",
+        "Bleast",
+        "Stiffness of the softer vehicle, negative where a force is",
+        "[lb/in²|N/cm²]",
+        "IF(MIN(A_1,A_2,b1_used_1,b1_used_2)>=0,MIN(B_1,B_2),-1)",
+        "above",
+        "Few tests scatter so widely that some draws are no stiffness.",
         number_format="0.00",
     ),
 )
@@ -516,6 +590,14 @@ _CHECKS = checks_section(
         "FALSE: a stiffness that is not positive. Look at b0, b1 and the optional A and B.",
     ),
     check(
+        "check_tests",
+        "Tests of sheet Stiffness are complete and leave crush",
+        "AND(tests_begun=10*(tests_1+tests_2),tests_low<>-1,OR(N(line_1)<>1,lined_1=1),OR(N(line_2)<>1,lined_2=1))",
+        "published tests",
+        "FALSE: a row lacks a number or says neither vehicle 1 nor 2; a speed is not above b0; or a line needs three "
+        "tests whose crush differs.",
+    ),
+    check(
         "check_restitution",
         "Restitution lies between 0 and 1",
         "AND(e>=0,e<1)",
@@ -578,6 +660,13 @@ _GUIDE = (
             "Stiffness from one test at one speed is a straight line through one point: stay near its crush. A and B "
             "of one test are bound to each other: b0 and b1 are drawn and both computed from them. Published A and B "
             "may be entered under Optional; they are then single values without a distribution, which is worth saying.",
+            "Crash tests. Sheet Stiffness takes tests of the vehicle's model, a row each with [weight|mass], speed, C1 "
+            "to C6 and width, as crash-test databases list them. One test with b0 of the assumptions gives b1 in each "
+            "trial, so that the test's own speed comes back whatever b0 is. From two on b1 scatters as the sister "
+            "tests do, in Student's t: two tests are hardly a scatter, and the ranges say so. Three or more at "
+            "different speeds may give b0 and b1 by least squares; with three the scatter has one degree of freedom "
+            "and no variance, so prefer more. The tests replace b1, [weight|mass] and width of the test on sheet "
+            "Inputs. The last two columns beside the tests show what speed the stiffness in use returns for each.",
             "Absorbed and lost. b0 and b1 come from the speed with which the tests struck, so that the energy computed "
             "from them is absorbed up to the greatest crush: it gives the closing speed whatever the restitution, and "
             "the equivalent barrier speed (EBS). Rebound gives e² of it back; 1 − e² is lost and gives the energy "
@@ -610,7 +699,8 @@ TEMPLATE = Template(
     needs="crush profiles, stiffness, weights, line of the force",
     assumptions=_assumptions(),
     constants=_constants(),
-    optional=(*_OPTIONAL, *_LEVER),
+    optional=(*_OPTIONAL, *_LEVER, *_LINES),
+    tests=STIFFNESS_TESTS,
     sections=(
         Section("1  Stiffness from a crash test", for_both(_STIFFNESS)),
         Section("2  Crush energy", for_both(_ENERGY)),
@@ -638,6 +728,9 @@ TEMPLATE = Template(
             "Example. The same force crushed both vehicles; limits as wide as stiffness data are uncertain",
             at_least=0.67,
             at_most=1.5,
+        ),
+        FilterRow(
+            "Stiffness above 0", "least_stiff", "A vehicle that is crushed resists. Without tests: no effect", above=0
         ),
     ),
     evidence=(

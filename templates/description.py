@@ -29,6 +29,7 @@ __all__ = [
     "Role",
     "Section",
     "Template",
+    "TestTable",
 ]
 
 ALL_CHECKS = "checks_hold"
@@ -68,7 +69,7 @@ class Input:
         notation: the same as the paper prints it (`α1`).
         base: the value of the cell; None for an optional input that is left blank.
         parameters: column of `xlmc_assumptions` -> value; empty for an input that is held fixed.
-        frozen: an assumption that is held at its base value until the engineer says otherwise.
+        frozen: an assumption that is held at its base value until the engineer, or a formula, says otherwise.
         choices: the only values the cell may take, where there are such.
     """
 
@@ -78,10 +79,10 @@ class Input:
     unit: str
     base: Number | None
     source: str
-    parameters: Mapping[str, Number] = field(default_factory=dict)
+    parameters: Mapping[str, Number | str] = field(default_factory=dict)
     distribution: str = "Uniform"
     number_format: str = "General"
-    frozen: bool = False
+    frozen: bool | str = False
     choices: tuple[float, ...] = ()
 
 
@@ -238,6 +239,26 @@ class PastedTable:
 
 
 @dataclass(frozen=True, slots=True)
+class TestTable:
+    """Rows of tests, what is computed in each, what is read from all, and how the tests scatter.
+
+    Attributes:
+        columns: heading and number format of what is entered, from column A on.
+        rows: room for so many.
+        computed: heading, formula and number format of further columns; `{r}` is the row.
+        read: quantities, each a named cell below the rows.
+        scatter: uncertain inputs, a table of their own below these.
+    """
+
+    columns: tuple[tuple[str, str], ...]
+    rows: int
+    computed: tuple[tuple[str, str, str], ...]
+    read: tuple[Equation, ...]
+    scatter: tuple[Input, ...]
+    subtitle: str
+
+
+@dataclass(frozen=True, slots=True)
 class Template:
     """A whole workbook.
 
@@ -252,6 +273,7 @@ class Template:
         waiting: uncertain inputs that do nothing until they have a value; they have a sheet of their own.
         waiting_note: what that sheet says of them.
         record: a table that may be pasted; it has a sheet of its own.
+        tests: rows of tests that may be entered; they have a sheet of their own.
     """
 
     title: str
@@ -276,11 +298,18 @@ class Template:
     waiting: tuple[Input, ...] = ()
     waiting_note: str = ""
     record: PastedTable | None = None
+    tests: TestTable | None = None
 
     @property
     def inputs(self) -> tuple[Input, ...]:
-        """Uncertain, fixed, optional and waiting inputs together."""
-        return self.assumptions + self.constants + self.optional + self.waiting
+        """Uncertain, fixed, optional and waiting inputs together, and the scatter of tests."""
+        scatter = () if self.tests is None else self.tests.scatter
+        return self.assumptions + self.constants + self.optional + self.waiting + scatter
+
+    @property
+    def read(self) -> tuple[Equation, ...]:
+        """What is read from tables that are pasted or entered."""
+        return tuple(each for table in (self.record, self.tests) if table is not None for each in table.read)
 
     @property
     def equations(self) -> tuple[Equation, ...]:

@@ -17,11 +17,12 @@ from templates.writer.fixed_size import fix_chart_sizes
 from templates.writer.guide_sheet import draw_guide
 from templates.writer.inputs_sheet import draw_inputs, draw_waiting
 from templates.writer.model_sheet import draw_model
-from templates.writer.places import RECORD, WAITING, name_cells, places, reference
+from templates.writer.places import RECORD, TESTS, WAITING, name_cells, places, reference
 from templates.writer.record_sheet import draw_record
 from templates.writer.results_sheet import draw_results_wanted
 from templates.writer.scene_sheet import chart_size, draw_scene
 from templates.writer.styles import Styles
+from templates.writer.tests_sheet import draw_tests
 from xlmc.excel.workbook.reader import read_workbook
 
 __all__ = ["write_book"]
@@ -71,6 +72,8 @@ def _write(template: Template, target: Path | BytesIO, values: Values) -> None:
             draw_waiting(workbook.add_worksheet(WAITING), styles, template, at, values)
         if template.record is not None:
             draw_record(workbook.add_worksheet(RECORD), styles, template, at, values)
+        if template.tests is not None:
+            draw_tests(workbook.add_worksheet(TESTS), styles, template, at, values)
         draw_model(model, styles, template, at, values)
         if template.diagram is not None:
             draw_scene(workbook, workbook.add_worksheet("Scene"), styles, template.diagram, values)

@@ -32,7 +32,8 @@ def draw_model(sheet: Worksheet, styles: Styles, template: Template, at: dict[st
     begin_sheet(sheet, styles, template.title, _SUBTITLE, _WIDTHS)
     for column, header in enumerate(_HEADERS):
         sheet.write_string(HEADER_ROW, column, header, styles("header"))
-    notation = {quantity.symbol: quantity.notation for quantity in (*template.inputs, *template.equations)}
+    notation = {each.symbol: each.symbol for each in template.read}
+    notation |= {quantity.symbol: quantity.notation for quantity in (*template.inputs, *template.equations)}
     forecasts = {row.symbol for row in template.forecasts}
     for section in template.sections:
         _draw_band(sheet, styles, section.title, at[section.equations[0].symbol][1] - 1)

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from xlsxwriter.utility import quote_sheetname, xl_rowcol_to_cell
 
-from templates.description import Template
+from templates.description import Template, TestTable
 
 __all__ = [
     "HEADER_ROW",
     "MOST_CAPTIONS",
     "RECORD",
+    "TESTS",
     "VALUE_COLUMN",
     "WAITING",
     "Place",
     "name_cells",
     "places",
     "reference",
+    "rows_of_tests",
 ]
 
 Place = tuple[str, int]
@@ -27,6 +29,8 @@ WAITING = "Run-out"
 """The sheet of inputs that wait."""
 RECORD = "Record"
 """The sheet of a table that is pasted."""
+TESTS = "Stiffness"
+"""The sheet of rows of tests."""
 MOST_CAPTIONS = 3
 """Names that have the defined name of their cell beside them, within the columns that are not folded away."""
 _GAP = 4
@@ -45,6 +49,10 @@ def places(template: Template) -> dict[str, Place]:
     found |= {given.symbol: (WAITING, row) for row, given in enumerate(template.waiting, HEADER_ROW + 1)}
     read = () if template.record is None else template.record.read
     found |= {each.symbol: (RECORD, row) for row, each in enumerate(read, HEADER_ROW + 1)}
+    if template.tests is not None:
+        first, scatter = rows_of_tests(template.tests)
+        found |= {each.symbol: (TESTS, row) for row, each in enumerate(template.tests.read, first)}
+        found |= {each.symbol: (TESTS, row) for row, each in enumerate(template.tests.scatter, scatter)}
     row = HEADER_ROW + 1
     for section in template.sections:
         for equation in section.equations:
@@ -55,6 +63,12 @@ def places(template: Template) -> dict[str, Place]:
         if reading.named:
             found[reading.named] = "Evidence", row
     return found
+
+
+def rows_of_tests(tests: TestTable) -> tuple[int, int]:
+    """The first row of what is read from the tests, and of how they scatter, counted from 0."""
+    first = HEADER_ROW + 1 + tests.rows + _GAP
+    return first, first + len(tests.read) + _GAP
 
 
 def name_cells(template: Template) -> list[tuple[int, int]]:

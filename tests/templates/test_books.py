@@ -113,7 +113,7 @@ def test_every_quantity_is_a_named_cell(name, book_path, described, opened):
     symbols = {quantity.symbol for quantity in (*template.inputs, *template.equations)}
     names = [name_cell(j, template.named) for j, _ in enumerate(template.vehicles, 1)]
     readings = {row.named for row in template.evidence if row.named}
-    readings |= {each.symbol for each in (() if template.record is None else template.record.read)}
+    readings |= {each.symbol for each in template.read}
     assert set(book.defined_names) == symbols | readings | {*names}
     for name, called in zip(names, template.vehicles, strict=True):
         [(sheet, place)] = book.defined_names[name].destinations

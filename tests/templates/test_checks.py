@@ -33,6 +33,7 @@ CASES = [
     ("planar-forward", "check_forward", {"V2_before": -1}),
     ("planar-forward", "check_ratio", {"mu": 55}),
     ("planar-forward", "check_friction", {"f_1": 75}),
+    ("crush-energy", "check_tests", {"line_1": 1}),
     ("crush-energy", "check_crush", {"c_1_3": -2}),
     ("crush-energy", "check_stiffness", {"b0_2": -0.1}),
     ("crush-energy", "check_restitution", {"e": -0.1}),

@@ -60,7 +60,8 @@ def edited(source, target, changes):
 
 def rows_of(model):
     """Name -> a cell of its row in a table."""
-    return {each.name: each.row for each in (*model.assumptions, *model.filters)}
+    rows = (*model.assumptions, *model.forecasts, *model.definitions.evidence, *model.filters)
+    return {each.name: each.row for each in rows}
 
 
 def type_in(book, rows, changes):
@@ -114,6 +115,53 @@ def wide_book(path, assumptions=60, forecasts=12, most=60.0):
         (wanted, "xlmc_settings", f"A{below + 4}:B{below + 5}"),
     ):
         sheet.add_table(Table(displayName=name, ref=area))
+    book.save(path)
+    return path
+
+
+READINGS = {
+    "at 40 ft": ["=M!B1", 31.0, "Uniform", 3.0, None, None, None, None],
+    "laser": ["=M!B1", 30.0, "Instrument", None, None, 12.0, 0.5, None],
+    "witness": ["=M!B2", 62.0, "Normal", None, 9.0, None, None, None],
+    "marks": ["=M!B2", 60.0, "Lognormal", None, None, 20.0, None, None],
+    "camera": ["=M!B1", 22.0, "At least", 1.0, None, None, None, None],
+    "doubtful": ["=M!B2", 55.0, "Normal", None, 8.0, None, None, "no"],
+}
+"""Name -> the other cells of a row of evidence, of each kind of error; the last one is not used."""
+
+
+def book_of_readings(path, readings=READINGS, trials=4_000):
+    """A workbook of two assumptions with cutoffs, two answers, a filter with two limits, and rows of evidence."""
+    book = openpyxl.Workbook()
+    model, sheet = book.active, book.create_sheet("T")
+    model.title = "M"
+    model["A1"], model["A2"], model["B1"], model["B2"] = 30.0, 2.0, "=A1", "=A1*A2"
+    tables = {
+        "xlmc_assumptions": [
+            ["Name", "Cell", "Distribution", "Mean", "Std dev", "Low", "High", "Lower cutoff", "Upper cutoff"],
+            ["v", "=M!A1", "Normal", 30.0, 4.0, None, None, 20.0, 38.0],
+            ["t", "=M!A2", "Uniform", None, None, 1.5, 2.5, None, None],
+        ],
+        "xlmc_forecasts": [
+            ["Name", "Cell", "Units", "Threshold", "Range %"],
+            ["speed", "=M!B1", "mph", 35.0, None],
+            ["distance", "=M!B2", "ft", None, 90.0],
+        ],
+        "xlmc_filters": [["Name", "Cell", "At least", "At most", "Use"], ["possible", "=M!B2", 0.0, 80.0, None]],
+        "xlmc_evidence": [
+            ["Name", "Cell", "Reading", "Error", "±", "Std dev", "Percent", "Resolution", "Use"],
+            *([name, *cells] for name, cells in readings.items()),
+        ],
+        "xlmc_settings": [["Setting", "Value"], ["Trials", trials]],
+    }
+    top = 1
+    for name, lines in tables.items():
+        for row, line in enumerate(lines, start=top):
+            for column, value in enumerate(line, start=1):
+                sheet.cell(row, column, value)
+        bottom = top + len(lines) - 1
+        sheet.add_table(Table(displayName=name, ref=f"A{top}:{chr(64 + len(lines[0]))}{bottom}"))
+        top = bottom + 2
     book.save(path)
     return path
 

@@ -14,7 +14,17 @@ from xlmc.excel.address import parse_address
 from xlmc.excel.workbook.injection.cell_edit import with_contents
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.writer import package_bytes
-from xlmc.montecarlo.definitions.scenarios import Band, Drawn, Frozen, Limits, Numbers, Range, Typed
+from xlmc.montecarlo.definitions.scenarios import (
+    Band,
+    Drawn,
+    Frozen,
+    Limits,
+    Measured,
+    Numbers,
+    Range,
+    Stated,
+    Typed,
+)
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import build_model, load
@@ -253,6 +263,13 @@ def test_a_draw_in_a_cell(tmp_path, subtests):
         ([Typed(parse_address("Input!D28"), 1.0)], "the workbook has no sheet 'Input'"),
         ([Typed(parse_address("'Results wanted'!B41"), 1.0)], "is a cell of the table xlmc_settings"),
         ([Limits(TANGENT, {"at_least": None, "at_most": None})], "has no limit, and its cell is"),
+        ([Measured(TANGENT, {"reading": 0.3})], f"{TANGENT!r} is a filter, and has no reading"),
+        ([Measured("laser", {"reading": 0.3})], "there is no evidence 'laser'"),
+        ([Stated("Nisan impact speed", {"threshold": 3.0})], "there is no forecast 'Nisan impact speed'"),
+        (
+            [Stated("Nissan impact speed", {"central": 0.5})],
+            "a central range of 0.5 % of 'Nissan impact speed' must be",
+        ),
     ],
 )
 def test_what_cannot_be_changed(case, changes, message):

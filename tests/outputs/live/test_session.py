@@ -2,19 +2,34 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import replace
 from itertools import chain, repeat
 
 import numpy as np
 import openpyxl
 import pytest
-from live_books import CASE, change, edited, rows_of, settle, short_case, simple, small, type_in, wide_book
+from live_books import (
+    CASE,
+    book_of_readings,
+    change,
+    edited,
+    rows_of,
+    settle,
+    short_case,
+    simple,
+    small,
+    type_in,
+    wide_book,
+)
 from openpyxl.worksheet.table import Table
 
+from xlmc.analysis.results.statements import statements
 from xlmc.errors import XlmcError
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.outputs.live.adjustments import Adjustments
+from xlmc.outputs.live.adjustments import NONE, Adjustments, adjustments_of, in_words, scenario_of
+from xlmc.outputs.live.hand_over import page_of
 from xlmc.outputs.live.jobs import MOVING_TRIALS, Outcome, SupersededError
 from xlmc.outputs.live.protocol import PageMessage, written
 from xlmc.outputs.live.session import Session
@@ -347,6 +362,146 @@ def test_a_band_of_a_distribution_is_a_range_of_its_percentiles(case):
     assert np.allclose(drawn, expected, rtol=1e-12)
 
 
+MOVED = {
+    "a reading with a tolerance": [("filter", "at 40 ft", "reading", 33.0)],
+    "its tolerance": [("filter", "at 40 ft", "plus_minus", 2.0)],
+    "an instrument": [("filter", "laser", "reading", 31.0), ("filter", "laser", "percent", 9.0)],
+    "its resolution": [("filter", "laser", "resolution", 2.0)],
+    "a reading with a normal error": [("filter", "witness", "reading", 66.0), ("filter", "witness", "std_dev", 6.0)],
+    "a lognormal one": [("filter", "marks", "reading", 64.0), ("filter", "marks", "percent", 30.0)],
+    "at least": [("filter", "camera", "reading", 29.0), ("filter", "camera", "plus_minus", 0.25)],
+    "one that was not used": [("filter", "doubtful", "used", True), ("filter", "doubtful", "reading", 57.0)],
+    "one that is not used now": [("filter", "witness", "used", False), ("filter", "witness", "reading", 57.0)],
+    "a cutoff that goes": [("assumption", "v", "upper_cutoff", NONE)],
+    "both go": [("assumption", "v", "upper_cutoff", NONE), ("assumption", "v", "lower_cutoff", NONE)],
+    "a limit that goes": [("filter", "possible", "at_most", NONE), ("assumption", "t", "high", 3.0)],
+    "a threshold": [("forecast", "distance", "threshold", 70.0), ("forecast", "speed", "threshold", NONE)],
+    "a central range": [("forecast", "speed", "central", 95.0), ("filter", "at 40 ft", "reading", 33.0)],
+}
+HEADINGS = {
+    "reading": "Reading",
+    "plus_minus": "±",
+    "percent": "Percent",
+    "resolution": "Resolution",
+    "std_dev": "Std dev",
+    "used": "Use",
+    "upper_cutoff": "Upper cutoff",
+    "lower_cutoff": "Lower cutoff",
+    "at_most": "At most",
+    "high": "High",
+    "threshold": "Threshold",
+    "central": "Range %",
+}
+
+
+@pytest.fixture(scope="module")
+def readings(tmp_path_factory):
+    path = book_of_readings(tmp_path_factory.mktemp("readings") / "case.xlsx")
+    return path, load(path)
+
+
+@pytest.mark.parametrize("moved", MOVED.values(), ids=MOVED)
+def test_readings_limits_that_go_and_how_answers_are_stated_give_what_the_edited_workbook_gives(
+    readings, tmp_path, moved, monkeypatch
+):
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", moving := 3_000)
+    path, model = readings
+    session = Session(model)
+    settle(session)
+    for of, name, key, value in moved:
+        session.receive(change(name, key, value, of=of))
+    typed = {(name, HEADINGS[key]): None if value == NONE else value for _, name, key, value in moved}
+    copy = load(edited(path, tmp_path / "edited.xlsx", typed))
+    settle(session)
+    expected = simulate(copy, evidence=session.rest.settings.evidence)
+    assert expected.accepted > 50
+    assert session.rest.trial_index.tobytes() == expected.trial_index.tobytes()
+    assert session.rest.tally.rejected.tolist() == expected.tally.rejected.tolist()
+    for forecast, values in expected.forecasts.items():
+        assert session.rest.forecasts[forecast].tobytes() == values.tobytes(), forecast
+    assert [text.text for text in statements(session.rest)] == [text.text for text in statements(expected)]
+    state = session.at_rest()
+    assert state.changes
+    assert page_of(state)  # which is of a copy with these changes typed into it, compared to the last bit
+    session.receive(PageMessage("keep", {"name": "kept"}))
+    again = Adjustments.of_json(json.loads(json.dumps(session.stored["kept"].as_json())))
+    assert again == session.adjustments
+    assert scenario_of(model.definitions, "kept", again) == scenario_of(model.definitions, "kept", session.adjustments)
+    assert adjustments_of(model.definitions, scenario_of(model.definitions, "kept", again)) is not None
+
+    name, key, value = moved[-1][1:]
+    session.receive(change(name, key, value, of=moved[-1][0], held=True))
+    found = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    expected = simulate(copy, trials=moving, sampling="mc", evidence=found.settings.evidence)
+    assert found.trial_index.tobytes() == expected.trial_index.tobytes()
+    session.receive(PageMessage("undo", {}))
+    assert len(session.adjustments.as_json()["filters"]) <= 2
+
+
+def test_readings_are_moved_without_another_program(readings):
+    """Draws and quantities are kept: a reading that moves is only compared with them."""
+    session = Session(readings[1])
+    settle(session)
+    runners = []
+    for reading in (31.5, 32.0, 32.5):
+        for name in ("at 40 ft", "witness"):
+            session.receive(change(name, "reading", reading * (1 + (name == "witness")), of="filter"))
+        runners.append(session._models.moving(session.adjustments).reusing)
+    assert runners[0] is runners[1] is runners[2]
+
+
+def test_what_cannot_be_taken_away_is_refused(readings):
+    session = Session(readings[1])
+    session.receive(change("possible", "at_most", NONE, of="filter"))
+    before = session.adjustments
+    for of, name, key, message in (
+        ("filter", "possible", "at_least", "would have no limit"),
+        ("filter", "at 40 ft", "reading", "'reading' to be set"),
+        ("assumption", "v", "mean", "'mean' to be set"),
+        ("forecast", "speed", "central", "'central' to be set"),
+    ):
+        with pytest.raises(XlmcError, match=message):
+            session.receive(change(name, key, NONE, of=of))
+    assert session.adjustments == before
+    (row,) = (each for each in filter_rows(session.own, before) if each["name"] == "possible")
+    assert [(each["key"], each["value"], each["own"], each["cell"]) for each in row["limits"]] == [
+        ("at_least", 0.0, 0.0, ""),
+        ("at_most", None, 80.0, ""),
+    ]
+    session.receive(change("possible", "at_most", 0.0, of="filter"))  # 0 is a limit, none is not
+    assert session.adjustments != before
+    assert in_words(session.own.definitions, session.adjustments) == ["possible: at most 80 → 0"]
+    assert in_words(session.own.definitions, before) == ["possible: at most 80 → none"]
+
+
+@pytest.mark.parametrize(
+    ("of", "name", "key", "value", "message"),
+    [
+        ("filter", "laser", "percent", 100.0, "Percent (100) of 'laser' must be below 100"),
+        ("filter", "at 40 ft", "plus_minus", 0.0, "The error of 'at 40 ft' is 0"),
+        ("filter", "marks", "reading", -1.0, "has no logarithm"),
+        ("filter", "witness", "std_dev", -2.0, "is negative"),
+        ("forecast", "speed", "central", 100.0, "must be above 1 and below 100"),
+    ],
+)
+def test_numbers_that_are_no_error_of_a_reading_are_said_and_can_be_mended(readings, of, name, key, value, message):
+    session = Session(readings[1])
+    settle(session)
+    session.receive(change(name, key, value, of=of))
+    told = settle(session)
+    assert message in next(each["text"] for each in told if each["kind"] == "trouble" and each["text"])
+    session.receive(PageMessage("undo", {}))
+    settle(session)
+    assert session.at_rest().run is session.rest
+
+
+def test_files_of_scenarios_before_forecasts_had_handles_are_read():
+    old = {"assumptions": {"v": {"mean": 31.0}}, "filters": {"f": {"at_most": 2.0}}}
+    assert Adjustments.of_json(old).as_json() == {**old, "forecasts": {}}
+    with pytest.raises(ValueError, match="none"):
+        Adjustments.of_json({"assumptions": {"v": {"mean": "none"}}, "filters": {}})
+
+
 def test_evidence_has_no_limit_to_be_moved(tmp_path):
     """A uniform error keeps what lies between two numbers, but these come from the reading."""
     book = openpyxl.load_workbook(CASE)
@@ -358,7 +513,8 @@ def test_evidence_has_no_limit_to_be_moved(tmp_path):
     model = load(tmp_path / "evidence.xlsx")
     session = Session(model)
     (row,) = (each for each in filter_rows(model, session.adjustments) if each["name"] == "EDR")
-    assert (row["limits"], row["keeps"]) == ([], "reads 12, uniform (Plus or minus 1): from 11 to 13")
+    assert [each["key"] for each in row["limits"]] == ["reading", "plus_minus"]
+    assert row["keeps"] == "reads 12, uniform (Plus or minus 1): from 11 to 13"
     with pytest.raises(XlmcError, match="no filter 'EDR' with 'at_most' to be set"):
         session.receive(change("EDR", "at_most", 14.0, of="filter"))
     session.receive(PageMessage("variants", {}))
@@ -546,3 +702,14 @@ def test_undoing_takes_nothing_away_that_another_window_kept(case):
     assert [*session.stored] == ["theirs"]
     session.receive(PageMessage("redo", {}))
     assert {*session.stored} == {"mine", "theirs"}
+
+
+def test_another_reading_and_another_threshold_in_a_saved_workbook_are_said(readings, tmp_path):
+    from xlmc.outputs.live.what_changed import what_changed
+
+    path, model = readings
+    saved = edited(path, tmp_path / "saved.xlsx", {("witness", "Reading"): 61.0, ("speed", "Threshold"): 36.0})
+    assert what_changed(model, load(saved)) == [
+        "witness: reads 62, normal (Std dev 9) → reads 61, normal (Std dev 9)",
+        "speed: threshold 35 → 36",
+    ]

@@ -32,7 +32,7 @@ from xlmc.excel.workbook.target import (
 from xlmc.excel.workbook.workbook import CellValue, Workbook
 from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.definitions.computed import Computed
-from xlmc.montecarlo.definitions.definitions import Assumption, Filter
+from xlmc.montecarlo.definitions.definitions import Assumption, Filter, Forecast
 from xlmc.montecarlo.definitions.scenarios import Scenario
 from xlmc.montecarlo.definitions.tables.changed_cells import NO_TABLE
 from xlmc.montecarlo.diagnostics.result_cells import ShownResults, filled_sheets, recalculated
@@ -143,7 +143,8 @@ def _holds(book: Workbook, cell: Cell, value: CellValue) -> bool:
 
 def _refuse_lacking(scenario: Scenario, lacking: Mapping[str, list[str]], model: CompiledModel) -> None:
     for name, headings in lacking.items():
-        rows: tuple[Assumption | Filter, ...] = (*model.assumptions, *model.filters, *model.forecast_filters)
+        filters = (*model.filters, *model.forecast_filters)
+        rows: tuple[Assumption | Filter | Forecast, ...] = (*model.assumptions, *filters, *model.forecasts)
         where = next((each.row for each in rows if each.name == name), None) or model.definitions.switches[name][0]
         if NO_TABLE in headings:
             message = f"The scenario {scenario.name!r} changes {name!r}, which stands in no table"
@@ -194,7 +195,8 @@ def _definitions(model: CompiledModel) -> list[object]:
         for a in model.assumptions
     ]
     filters = [(f.name, f.at_least, f.at_most, f.above, f.below) for f in (*model.filters, *model.forecast_filters)]
+    evidence = [(each.name, each.reading, each.sizes) for each in model.evidence if each.used]
     frozen = {a.name for a in model.assumptions if a.frozen}  # whose correlations have no effect, and are not read
     rows = [c for c in model.definitions.correlations if frozen.isdisjoint((c.first, c.second))]
     correlations = [(c.first, c.second, c.value) for c in rows]
-    return [assumptions, filters, correlations, model.forecasts]
+    return [assumptions, filters, evidence, correlations, model.forecasts]

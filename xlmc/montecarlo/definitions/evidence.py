@@ -177,7 +177,7 @@ class Evidence:
 
     Attributes:
         cell: what the model has in place of the reading.
-        reading: the measured number; None if none was entered, or where the row is not used.
+        reading: the measured number; None if none was entered.
         error: a key of `ERRORS`.
         sizes: key of `SIZES` -> number or cell, of those that are filled in.
         unused: why it does not count, in words, such as `USE_IS_OFF`; empty where it does.

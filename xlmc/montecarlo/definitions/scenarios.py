@@ -19,10 +19,12 @@ __all__ = [
     "Drawn",
     "Frozen",
     "Limits",
+    "Measured",
     "Numbers",
     "Range",
     "Redrawn",
     "Scenario",
+    "Stated",
     "Switched",
     "Tabulated",
     "Typed",
@@ -106,6 +108,24 @@ class Switched:
 
 
 @dataclass(frozen=True, slots=True)
+class Measured:
+    """A row of evidence that is used has another reading or error: `reading`, or a key of `SIZES` -> number."""
+
+    evidence: str
+    values: Mapping[str, float]
+    where: Cell | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Stated:
+    """A forecast is stated otherwise: its `threshold`, None for none, or its `central` range, in percent."""
+
+    forecast: str
+    values: Mapping[str, float | None]
+    where: Cell | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Typed:
     """Something else is typed into a cell; into that of a drawn assumption, another base value.
 
@@ -132,7 +152,7 @@ class Tabulated:
     where: Cell | None = None
 
 
-Change = Frozen | Drawn | Range | Band | Numbers | Redrawn | Limits | Switched | Typed | Tabulated
+Change = Frozen | Drawn | Range | Band | Numbers | Redrawn | Limits | Switched | Measured | Stated | Typed | Tabulated
 """One change. `where` is the cell that asks for it, for messages; None where a program does."""
 
 

@@ -25,6 +25,7 @@ from xlmc.engine.engine import Column, Evaluator, Linear, Target
 from xlmc.engine.engines import ENGINES
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Filter
+from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.loop.blocks import ModelRunner
 from xlmc.montecarlo.model.draw_binding import base_point, parameter_target
 from xlmc.montecarlo.model.model import CompiledModel
@@ -108,7 +109,9 @@ def _targets(filter_: Filter) -> tuple[Target, ...]:
     condition.
     """
     limits = filter_limits(filter_)
-    if filter_.evidence is not None or not limits:
+    if filter_.evidence is not None and filter_.evidence.by_chance:
+        return parameter_target(filter_.cell), parameter_target(filter_.evidence.chance)
+    if not limits:
         return (Target(filter_condition(filter_), filter_.cell),)
     cells = [filter_.cell, *(bound for _, bound in limits if isinstance(bound, Cell))]
     return tuple(map(parameter_target, cells))
@@ -229,7 +232,9 @@ class _MovedEvaluator:
 def _condition(filter_: Filter, columns: Sequence[Column]) -> Column:
     """Whether a filter keeps each trial, `(n,)`, with the error of a quantity or a limit where there is one."""
     limits = filter_limits(filter_)
-    if filter_.evidence is not None or not limits:
+    if filter_.evidence is not None and filter_.evidence.by_chance:
+        return _by_chance(filter_.evidence, *columns)
+    if not limits:
         return columns[0]
     quantity, bounds = columns[0], iter(columns[1:])
     holds = np.ones(quantity.values.size, bool)
@@ -242,6 +247,17 @@ def _condition(filter_: Filter, columns: Sequence[Column]) -> Column:
         else:
             holds &= _COMPARES[relation](quantity.values, bound)
     return Column(holds, codes)
+
+
+def _by_chance(evidence: Evidence, quantity: Column, chance: Column) -> Column:
+    """Whether evidence whose error is no limit keeps each trial, `(n,)`; see `accepted_by_chance`."""
+    law = evidence.bell
+    assert law is not None, "evidence that keeps trials by chance has no limits"
+    m = np.asarray(quantity.values, np.float64)
+    holds = chance.values <= np.exp(law.log_weight(m))
+    if law.logarithmic:
+        holds &= m > 0.0
+    return Column(holds, quantity.codes)
 
 
 def _first(codes: NDArray[np.uint8], more: NDArray[np.uint8] | None) -> NDArray[np.uint8]:

@@ -32,23 +32,28 @@ from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.excel.workbook.workbook import CellValue
-from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Forecast
 from xlmc.montecarlo.definitions.distribution import Distribution
+from xlmc.montecarlo.definitions.evidence import SIZES
 from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Change,
     Drawn,
     Frozen,
     Limits,
+    Measured,
     Numbers,
     Range,
     Redrawn,
+    Stated,
     Switched,
     Tabulated,
     Typed,
 )
 from xlmc.montecarlo.definitions.tables.changed_cells import cells_that_change, use_cell
+from xlmc.montecarlo.definitions.tables.evidence_rows import as_filter, check_sizes
 from xlmc.montecarlo.definitions.tables.filters import LIMITS, contradiction
+from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.draw_binding import draw_of
 from xlmc.montecarlo.model.loading import filter_faults, model_with_values
@@ -160,13 +165,7 @@ def changed_cells(model: CompiledModel, definitions: Definitions) -> tuple[dict[
     """
     cells: dict[Cell, CellValue] = {}
     lacking: dict[str, list[str]] = {}
-    before: tuple[Assumption | Filter, ...] = (*model.assumptions, *model.filters, *model.forecast_filters)
-    after: tuple[Assumption | Filter, ...] = (
-        *definitions.assumptions,
-        *definitions.filters,
-        *definitions.forecast_filters,
-    )
-    for old, new in zip(before, after, strict=True):
+    for old, new in zip(_rows(model.definitions), _rows(definitions), strict=True):
         if old is not new:
             found, missing = cells_that_change(model.workbook, old, new)
             cells |= found
@@ -187,6 +186,10 @@ def _refuse_no_number(change: Change) -> None:
             what, values = change.filter, change.values.values()
         case Numbers():
             what, values = change.assumption, change.values.values()
+        case Measured():
+            what, values = change.evidence, change.values.values()
+        case Stated():
+            what, values = change.forecast, change.values.values()
         case Range():
             what, values = change.assumption, (change.low, change.high)
         case _:
@@ -195,6 +198,10 @@ def _refuse_no_number(change: Change) -> None:
         if isinstance(value, float) and not math.isfinite(value):
             message = f"{what!r} is changed to {value}, which no cell can hold"
             raise DefinitionError(message, where=change.where, hint="give a number, or None to take a limit away")
+
+
+def _rows(of: Definitions) -> tuple[Assumption | Filter | Forecast, ...]:
+    return (*of.assumptions, *of.filters, *of.forecast_filters, *of.forecasts)
 
 
 def _refuse_cell(model: CompiledModel, change: Typed) -> None:
@@ -224,6 +231,7 @@ def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
     """Return the definitions with the changes of assumptions and filters."""
     assumptions = {name_key(each.name): each for each in model.assumptions}
     filters = {name_key(each.name): each for each in (*model.filters, *model.forecast_filters)}
+    forecasts = {name_key(each.name): each for each in model.forecasts}
     unused = {name_key(each.name) for each in model.definitions.unused}
     last: dict[str, Change] = {}
     for change in changes:
@@ -234,10 +242,16 @@ def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
             key = _known(change.filter, filters, "filter", change)
             if (evidence := filters[key].evidence) is not None:
                 message = f"{evidence.name!r} is evidence: its reading and its error say what it keeps, and no limit"
-                hint = "type another reading or error into its cells"
+                hint = "give it another reading or error"
                 raise DefinitionError(message, where=change.where or evidence.row, hint=hint)
             filters[key] = replace(filters[key], **change.values)  # type: ignore[arg-type]  # the keys are of limits
             _refuse_contradiction(filters[key], change)
+        elif isinstance(change, Measured):
+            key = _known(change.evidence, filters, "evidence", change)
+            filters[key] = _measured(filters[key], change)
+        elif isinstance(change, Stated):
+            key = _known(change.forecast, forecasts, "forecast", change)
+            forecasts[key] = _stated(forecasts[key], change)
         elif not isinstance(change, Typed | Switched | Tabulated):
             key = _known(change.assumption, assumptions, "assumption", change)
             assumptions[key] = _other(assumptions[key], change, model.lowering)
@@ -250,7 +264,42 @@ def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
         assumptions=tuple(assumptions.values()),
         filters=changed[:count],
         forecast_filters=changed[count:],
+        forecasts=tuple(forecasts.values()),
     )
+
+
+def _measured(filter_: Filter, change: Measured) -> Filter:
+    """Return the filter of a row of evidence with other numbers.
+
+    Raises:
+        DefinitionError: it is no evidence, or the numbers are no error of a reading.
+    """
+    if (evidence := filter_.evidence) is None:
+        message = f"{filter_.name!r} is a filter, and has no reading"
+        raise DefinitionError(message, where=change.where or filter_.row, hint="change its limits")
+    sizes = {key: value for key, value in change.values.items() if key != "reading"}
+    wrong = next((key for key in sizes if key not in evidence.sizes), None)
+    if wrong is not None:
+        message = f"the error of {filter_.name!r} is not given by {SIZES.get(wrong, wrong)}"
+        raise DefinitionError(message, where=change.where or filter_.row, hint="change what it is given by")
+    found = replace(evidence, reading=change.values.get("reading", evidence.reading), sizes={**evidence.sizes, **sizes})
+    assert not any(found.cells), "a model knows the numbers of evidence"
+    check_sizes(found, found.reading, found.sizes)  # type: ignore[arg-type]  # numbers, as asserted
+    return as_filter(found)
+
+
+def _stated(forecast: Forecast, change: Stated) -> Forecast:
+    """Return the forecast with another threshold or central range.
+
+    Raises:
+        DefinitionError: the central range is none.
+    """
+    central = change.values.get("central")
+    if central is not None and not 1.0 < central < 100.0:
+        message = f"a central range of {show(central)} % of {forecast.name!r} must be above 1 and below 100"
+        raise DefinitionError(message, where=change.where or forecast.row, hint="give percent, such as 51")
+    share = forecast.central if central is None else central / 100.0
+    return replace(forecast, central=share, threshold=change.values.get("threshold", forecast.threshold))
 
 
 def _merged(again: Definitions, old: Definitions, new: Definitions) -> Definitions:
@@ -259,7 +308,12 @@ def _merged(again: Definitions, old: Definitions, new: Definitions) -> Definitio
     assumptions = tuple(
         _with_difference(each, *pairs[each.name]) if each.name in pairs else each for each in again.assumptions
     )
-    return replace(again, assumptions=assumptions)
+    stated = {b.name: b for a, b in zip(old.forecasts, new.forecasts, strict=True) if a is not b}
+    forecasts = tuple(
+        replace(each, central=by.central, threshold=by.threshold) if (by := stated.get(each.name)) else each
+        for each in again.forecasts
+    )
+    return replace(again, assumptions=assumptions, forecasts=forecasts)
 
 
 def _with_difference(again: Assumption, old: Assumption, new: Assumption) -> Assumption:
@@ -268,7 +322,12 @@ def _with_difference(again: Assumption, old: Assumption, new: Assumption) -> Ass
     return replace(again.with_numbers(numbers), frozen=new.frozen, base=new.base)
 
 
-def _known(name: str, those: Mapping[str, Assumption] | Mapping[str, Filter], what: str, change: Change) -> str:
+def _known(
+    name: str,
+    those: Mapping[str, Assumption] | Mapping[str, Filter] | Mapping[str, Forecast],
+    what: str,
+    change: Change,
+) -> str:
     """Return the key of a name.
 
     Raises:

@@ -26,7 +26,7 @@ from xlmc.excel.functions.values import Value
 from xlmc.excel.workbook.injection.content_types import roles
 from xlmc.excel.workbook.number_formats import cell_formats
 from xlmc.excel.workbook.workbook import Workbook
-from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
+from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Forecast
 from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.stating import Kind as StatedAs
 from xlmc.montecarlo.distributions.spelling import name_key
@@ -128,7 +128,9 @@ def _asks_for_the_same(old: Definitions, new: Definitions, live: Collection[str]
         new: of the same one, changed.
         live: names of the assumptions that the old ones draw.
     """
-    if (old.forecasts, old.checks, old.forecast_filters) != (new.forecasts, new.checks, new.forecast_filters):
+    if (old.checks, old.forecast_filters) != (new.checks, new.forecast_filters):
+        return False
+    if [_asked_of(each) for each in old.forecasts] != [_asked_of(each) for each in new.forecasts]:
         return False
     if old.rewritten is not new.rewritten:
         return False
@@ -138,6 +140,11 @@ def _asks_for_the_same(old: Definitions, new: Definitions, live: Collection[str]
     if any(a is not b and _cells_of(a, live) != _cells_of(b, live) for a, b in pairs):
         return False
     return all(targets_of((), (a,)) == targets_of((), (b,)) for a, b in zip(old.filters, new.filters, strict=True))
+
+
+def _asked_of(forecast: Forecast) -> Forecast:
+    """Return what is computed of a forecast, without how it is stated."""
+    return replace(forecast, threshold=None, central=0.5)
 
 
 def _cells_of(assumption: Assumption, live: Collection[str]) -> tuple[object, ...]:
@@ -227,10 +234,10 @@ class CompiledModel:
             definitions = with_errors(definitions, faults, self.lowering)
             self.needed, self.lowering = lower_needed(workbook, definitions)
             draws, faults = possible_draws(self.needed, self.lowering, definitions)
-        self._nodes = len(self.lowering.dag.nodes)
         self._programs: dict[str, _Compiled] = {}
         self._define(definitions, draws)
         self._check_targets()
+        self._nodes = len(self.lowering.dag.nodes)
         self._checks = _lower_checks(workbook, definitions, frozenset(self.needed.live)) if self.checks else None
         self._take_notices()
 

@@ -1,8 +1,9 @@
-"""What was changed in the window, beside the workbook: numbers and switches of assumptions, limits of filters.
+"""What was changed in the window, beside the workbook: numbers of assumptions, filters and forecasts, and switches.
 
 Keys of an assumption are those of its parameters and cutoffs, `base` for the value that it is held at, `frozen`, and
-those of a band of its distribution that it is confined to; keys of a filter are those of its limits, and `used`, which
-a row of evidence has, too.
+those of a band of its distribution that it is confined to; keys of a filter are those of its limits, of a row of
+evidence its `reading` and those of its error, and of both `used`; keys of a forecast are its `threshold` and `central`,
+its central range in percent. A limit, cutoff or threshold that is `NONE` is taken away.
 """
 
 from __future__ import annotations
@@ -10,26 +11,34 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from math import isfinite
-from typing import Any, Final
+from typing import Any, Final, Literal
 
 from xlmc.analysis.results.statements.in_words import number_text
 from xlmc.excel.address import Cell
-from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter, Parameter
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Forecast, Parameter
+from xlmc.montecarlo.definitions.evidence import SIZES, USE_IS_OFF, Evidence
 from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Change,
     Drawn,
     Frozen,
     Limits,
+    Measured,
     Numbers,
     Range,
     Scenario,
+    Stated,
     Switched,
 )
 
 __all__ = [
     "BAND",
     "LIMITS",
+    "MEASURED",
+    "NONE",
+    "PARTS",
+    "REMOVABLE",
+    "STATED",
     "SWITCHES",
     "Adjustments",
     "Amount",
@@ -38,6 +47,8 @@ __all__ = [
     "assumption_numbers",
     "changes_of",
     "in_words",
+    "is_own",
+    "measured_numbers",
     "movable_limits",
     "own_values",
     "scenario_of",
@@ -53,7 +64,22 @@ BAND: Final = {"band_low": 0.0, "band_high": 100.0}
 SWITCHES: Final = frozenset({"frozen", "used"})
 """Keys whose values are yes or no."""
 
-Amount = float | bool
+MEASURED: Final = {"reading": "reading", **{key: heading.lower() for key, heading in SIZES.items()}}
+"""Key of a number of evidence -> how it is read."""
+
+STATED: Final = {"threshold": "threshold", "central": "central range"}
+"""Key of how a forecast is stated -> how it is read."""
+
+NONE: Final = "none"
+"""The value of what is taken away."""
+
+REMOVABLE: Final = frozenset({*LIMITS, *CUTOFFS, "threshold"})
+"""Keys of what can be taken away."""
+
+PARTS: Final = {"assumption": "assumptions", "filter": "filters", "forecast": "forecasts"}
+"""Kind of row -> the field of `Adjustments` that holds its changes."""
+
+Amount = float | bool | Literal["none"]
 
 Changed = Mapping[str, Mapping[str, Amount]]
 """Name -> key -> value."""
@@ -65,9 +91,10 @@ class Adjustments:
 
     assumptions: Changed = field(default_factory=dict)
     filters: Changed = field(default_factory=dict)
+    forecasts: Changed = field(default_factory=dict)
 
     def __bool__(self) -> bool:
-        return bool(self.assumptions or self.filters)
+        return bool(self.assumptions or self.filters or self.forecasts)
 
     def having(self, of: str, name: str, key: str, value: Amount | None) -> Adjustments:
         """The adjustments with one value set; None sets it back to the workbook's."""
@@ -88,7 +115,7 @@ class Adjustments:
         found = Adjustments()
         for of, name, key, value in self._each():
             own = own_values(definitions, of, name)
-            if key in own and own[key] != value:
+            if key in own and not is_own(value, own[key]):
                 found = found.having(of, name, key, value)
         return found
 
@@ -108,8 +135,8 @@ class Adjustments:
         return found
 
     def numbers(self, definitions: Definitions) -> Adjustments:
-        """The other part: numbers of what is drawn, and limits of filters that are used."""
-        found = Adjustments()
+        """The other part: numbers of what is drawn, of filters that are used, and of forecasts."""
+        found = Adjustments(forecasts=self.forecasts)
         for name, given in self.filters.items():
             if given.get("used", definitions.is_used(name)):
                 found = found._with("filter", name, {key: value for key, value in given.items() if key != "used"})
@@ -122,10 +149,7 @@ class Adjustments:
 
     def as_json(self) -> dict[str, Any]:
         """Plain values, which `of_json` reads back."""
-        return {
-            "assumptions": {name: dict(each) for name, each in self.assumptions.items()},
-            "filters": {name: dict(each) for name, each in self.filters.items()},
-        }
+        return {part: {name: dict(each) for name, each in self._part(of).items()} for of, part in PARTS.items()}
 
     @classmethod
     def of_json(cls, found: Mapping[str, Any]) -> Adjustments:
@@ -135,29 +159,48 @@ class Adjustments:
             ValueError, TypeError, AttributeError, KeyError, OverflowError: it is something else.
         """
         made = cls()
-        for of, part in (("assumption", "assumptions"), ("filter", "filters")):
-            for name, each in found[part].items():
+        for of, part in PARTS.items():
+            rows = found.get(part, {}) if of == "forecast" else found[part]  # files before 0.12.0 have no forecasts
+            for name, each in rows.items():
                 for key, value in each.items():
-                    number = value if isinstance(value, bool) else float(value)
-                    if not isfinite(number):
-                        raise ValueError(f"{key} is {number}")
-                    made = made.having(of, str(name), str(key), number)
+                    made = made.having(of, str(name), str(key), _amount(str(key), value))
         return made
 
     def _part(self, of: str) -> Changed:
-        return self.assumptions if of == "assumption" else self.filters
+        return {"assumption": self.assumptions, "filter": self.filters, "forecast": self.forecasts}[of]
 
     def _with(self, of: str, name: str, own: Mapping[str, Amount]) -> Adjustments:
         part = {other: each for other, each in self._part(of).items() if other != name}
         if own:
             part[name] = own
-        return replace(self, **{f"{of}s": part})
+        return replace(self, **{PARTS[of]: part})
 
     def _each(self) -> Iterator[tuple[str, str, str, Amount]]:
-        for of, part in (("assumption", self.assumptions), ("filter", self.filters)):
-            for name, each in part.items():
+        for of in PARTS:
+            for name, each in self._part(of).items():
                 for key, value in each.items():
                     yield of, name, key, value
+
+
+def _amount(key: str, value: object) -> Amount:
+    """Return a value that was read from a file.
+
+    Raises:
+        ValueError, TypeError, OverflowError: it is none.
+    """
+    if isinstance(value, bool):
+        return value
+    if value == NONE and key in REMOVABLE:
+        return NONE
+    number = float(value)  # type: ignore[arg-type]  # whatever it is
+    if not isfinite(number):
+        raise ValueError(f"{key} is {number}")
+    return number
+
+
+def is_own(value: Amount, own: Parameter | bool | None) -> bool:
+    """Return whether a value is what the workbook says."""
+    return value == own or (value == NONE and own is None)
 
 
 def assumption_numbers(assumption: Assumption) -> dict[str, tuple[str, Parameter]]:
@@ -170,8 +213,13 @@ def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parame
     if of == "filter":
         rows = (*definitions.filters, *definitions.forecast_filters, *definitions.unused)
         filter_ = next((each for each in rows if each.name == name), None)
+        evidence = next((each for each in definitions.evidence if each.name == name), None)
         switch = {"used": definitions.is_used(name)} if name in definitions.switches else {}
-        return {**({} if filter_ is None else movable_limits(filter_)), **switch}
+        numbers = {} if evidence is None else measured_numbers(evidence)
+        return {**numbers, **({} if filter_ is None else movable_limits(filter_)), **switch}
+    if of == "forecast":
+        forecast = next((each for each in definitions.forecasts if each.name == name), None)
+        return {} if forecast is None else {"threshold": forecast.threshold, "central": _percent(forecast)}
     assumption = next((each for each in definitions.assumptions if each.name == name), None)
     if assumption is None:
         return {}
@@ -185,6 +233,17 @@ def movable_limits(filter_: Filter) -> dict[str, Parameter]:
     return {key: value for key, value in limits.items() if value is not None}
 
 
+def measured_numbers(evidence: Evidence) -> dict[str, Parameter]:
+    """Return the reading of evidence and the numbers of its error, of those that are given."""
+    reading = {} if evidence.reading is None else {"reading": evidence.reading}
+    return {**reading, **{key: evidence.sizes[key] for key in SIZES if key in evidence.sizes}}
+
+
+def _percent(forecast: Forecast) -> float:
+    """Return the central range of a forecast, in percent."""
+    return float(f"{100.0 * forecast.central:.12g}")
+
+
 def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Change]:
     """What is to be changed in the workbook. What has no effect, a number of what is frozen, is left out."""
     found: list[Change] = []
@@ -193,12 +252,20 @@ def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Chang
     for name, given in adjustments.filters.items():
         own = definitions.is_used(name)
         used = bool(given.get("used", own))
-        limits = {key: float(value) for key, value in given.items() if key != "used"}
+        numbers = {key: value for key, value in given.items() if key != "used"}
         if used != own:
             found.append(Switched(name, used))
-        if used and limits:
-            found.append(Limits(name, limits))
+        if used and numbers and MEASURED.keys() >= numbers.keys():
+            found.append(Measured(name, {key: float(value) for key, value in numbers.items()}))
+        elif used and numbers:
+            found.append(Limits(name, _numbers(numbers)))
+    found += [Stated(name, _numbers(given)) for name, given in adjustments.forecasts.items()]
     return found
+
+
+def _numbers(given: Mapping[str, Amount]) -> dict[str, float | None]:
+    """Key -> number; None for what is taken away."""
+    return {key: None if value == NONE else float(value) for key, value in given.items()}
 
 
 def _of_assumption(assumption: Assumption, given: dict[str, Amount]) -> Iterator[Change]:
@@ -212,7 +279,7 @@ def _of_assumption(assumption: Assumption, given: dict[str, Amount]) -> Iterator
         yield Drawn(name)
     low, high = (float(given.pop(key, end)) for key, end in BAND.items())
     if given:
-        yield Numbers(name, {key: float(value) for key, value in given.items()})
+        yield Numbers(name, _numbers(given))
     if (low, high) != (*BAND.values(),):
         yield Band(name, low, high)
 
@@ -231,8 +298,11 @@ def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments 
         if values is None:
             return None
         of, name = _row_of(change)
+        own = own_values(definitions, of, name)
         for key, value in values.items():
-            if key not in own_values(definitions, of, name):
+            if key not in own and value == NONE:
+                continue  # there is nothing to be taken away
+            if key not in own:
                 return None
             found = found.having(of, name, key, value)
     return found
@@ -241,8 +311,10 @@ def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments 
 def _row_of(change: Change) -> tuple[str, str]:
     """What a change with values is of, and its name."""
     match change:
-        case Limits(name) | Switched(name):
+        case Limits(name) | Switched(name) | Measured(name):
             return "filter", name
+        case Stated(name):
+            return "forecast", name
         case Frozen(name) | Drawn(name) | Band(name) | Range(name) | Numbers(name):
             return "assumption", name
     raise TypeError(change)
@@ -252,7 +324,7 @@ def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, 
     """Key -> value of one change; None where it is none of these."""
     match change:
         case Frozen(_, value):
-            return {"frozen": True} | ({} if value is None else {"base": value})
+            return {"frozen": True} if value is None else {"frozen": True, "base": value}
         case Drawn():
             return {"frozen": False}
         case Switched(_, used):
@@ -260,10 +332,10 @@ def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, 
         case Band(_, low, high):
             return dict(zip(BAND, (low, high), strict=True))
         case Range(name, low, high) if name in assumptions and {"low", "high"} <= {*assumptions[name].parameters}:
-            ends = {"low": low, "high": high}
+            ends: dict[str, float | None] = {"low": low, "high": high}
             return {key: end for key, end in ends.items() if end is not None}
-        case Numbers(_, values) | Limits(_, values) if None not in values.values():
-            return {key: value for key, value in values.items() if value is not None}
+        case Numbers(_, values) | Limits(_, values) | Measured(_, values) | Stated(_, values):
+            return {key: NONE if value is None else value for key, value in values.items()}
     return None
 
 
@@ -275,6 +347,8 @@ def adjusted_definitions(definitions: Definitions, adjustments: Adjustments) -> 
         filters=tuple(_filter(each, adjustments.filters) for each in definitions.filters),
         forecast_filters=tuple(_filter(each, adjustments.filters) for each in definitions.forecast_filters),
         unused=tuple(_filter(each, adjustments.filters) for each in definitions.unused),
+        evidence=tuple(_evidence(each, adjustments.filters) for each in definitions.evidence),
+        forecasts=tuple(_forecast(each, adjustments.forecasts) for each in definitions.forecasts),
     )
 
 
@@ -285,13 +359,30 @@ def _assumption(assumption: Assumption, changed: Changed) -> Assumption:
     frozen_part: dict[str, Any] = {key: given.pop(key) for key in ("base", "frozen") if key in given}
     for key in BAND:
         given.pop(key, None)
-    return replace(assumption.with_numbers({key: float(value) for key, value in given.items()}), **frozen_part)
+    return replace(assumption.with_numbers(_numbers(given)), **frozen_part)
 
 
 def _filter(filter_: Filter, changed: Changed) -> Filter:
     given = dict(changed.get(filter_.name, {}))
     used = bool(given.pop("used", filter_.used))
-    return replace(filter_, used=used, **{key: float(value) for key, value in given.items()})  # type: ignore[arg-type]
+    if filter_.evidence is not None:
+        return replace(filter_, used=used, evidence=_evidence(filter_.evidence, changed))
+    return replace(filter_, used=used, **_numbers(given))  # type: ignore[arg-type]
+
+
+def _evidence(evidence: Evidence, changed: Changed) -> Evidence:
+    given = dict(changed.get(evidence.name, {}))
+    unused = ("" if given.pop("used") else USE_IS_OFF) if "used" in given else evidence.unused
+    numbers = {key: float(value) for key, value in given.items()}
+    reading = numbers.pop("reading", evidence.reading)
+    return replace(evidence, reading=reading, sizes={**evidence.sizes, **numbers}, unused=unused)
+
+
+def _forecast(forecast: Forecast, changed: Changed) -> Forecast:
+    given = _numbers(changed.get(forecast.name, {}))
+    central = given.get("central")
+    share = forecast.central if central is None else central / 100.0
+    return replace(forecast, threshold=given.get("threshold", forecast.threshold), central=share)
 
 
 def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
@@ -302,7 +393,7 @@ def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
         if key in own:
             label = changed_text(definitions, of, name, key, own[key], value)
         else:
-            number = ("off", "on")[value] if isinstance(value, bool) else number_text(value)
+            number = _amount_text(key, value)
             label = f"{LIMITS.get(key, key.replace('_', ' '))} {number} (no longer in the workbook)"
         found.append(f"{name}: {label}")
     return found
@@ -316,18 +407,27 @@ def changed_text(
         return "frozen" if after else "not frozen"
     if key == "used":
         return "used" if after else "not used"
-    if of == "filter":
-        heading = LIMITS[key]
+    if of != "assumption":
+        heading = {**LIMITS, **MEASURED, **STATED}[key]
     elif key in BAND:
         heading = "band from" if key == "band_low" else "band to"
-        return f"{heading} {number_text(after)} %"
+        return f"{heading} {_amount_text(key, after)} %"
     elif key == "base":
         heading = "value"
     else:
         assumption = next(each for each in definitions.assumptions if each.name == name)
         heading = assumption_numbers(assumption)[key][0]
-    shown = "none" if before is None else number_text(before)
-    return f"{heading} {shown} → {number_text(after)}"
+    shown = "none" if before is None else _amount_text(key, before)
+    return f"{heading} {shown} → {_amount_text(key, after)}"
+
+
+def _amount_text(key: str, value: Parameter | Amount) -> str:
+    """`0.75`, `51 %`; `none` for what is taken away; `on` and `off` of a switch."""
+    if isinstance(value, bool):
+        return ("off", "on")[value]
+    if value == NONE:
+        return NONE
+    return f"{number_text(value)} %" if key == "central" else number_text(value)
 
 
 def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:

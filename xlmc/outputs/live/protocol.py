@@ -9,11 +9,12 @@ secret, and a number that is used once; anything else before it ends the connect
 | `proof` | `proof` | the answer to the server's `proof` (`xlmc.outputs.live.guard` says of what) |
 | `copy` | `key` | on the start page: copy a template into the folder and open it |
 | `ticket` | | on the start page: a file is to be sent |
-| `set` | `of`, `name`, `key`, `value`, `held`, `seq` | a number or a switch of an assumption or a filter; `value` \
-null: as in the book; `held`: a handle is still held; `seq`: counts the page's changes, and comes back with the frame |
-| `numbers` | `of`, `name`, `values`, `seq` | several numbers of one assumption or filter at once: key -> number |
+| `set` | `of`, `name`, `key`, `value`, `held`, `seq` | a number or a switch of an assumption, filter or forecast; \
+`value` null: as in the book, `none`: taken away; `held`: a handle is still held; `seq`: counts the page's changes, \
+and comes back with the frame |
+| `numbers` | `of`, `name`, `values`, `seq` | several numbers of one row at once: key -> number |
 | `undo`, `redo` | | go back to the state before the last change, and forth again |
-| `reset` | `of`, `name` | everything of one assumption or filter as in the book; with an empty `name`: of all |
+| `reset` | `of`, `name` | everything of one row as in the book; with an empty `name`: of all |
 | `view` | `forecasts`, `chosen`, `tab`, `first`, `second`, `fits` | which charts can be seen, of which \
 forecasts the other tabs are, which tab is open, whose pairs it \
 shows, whether fitted distributions are wanted |
@@ -43,8 +44,8 @@ on the state that is shown; `other`: the key of the workbook to compare it with 
 | `ticket` | `ticket` | one file may be sent with it |
 | `book` | `name`, `folder`, `forecasts`, `notices`, `settings`, `shapes` | the workbook as it is now |
 | `others` | `books` | the workbooks beside it that it can be compared with: `name` and `key` |
-| `state` | `version`, `assumptions`, `filters`, `changes`, `scenarios`, `shown`, `offered`, `behind`, `undo`, \
-`redo` | what is set; `changes` in words; `undo`, `redo`: whether there is something to |
+| `state` | `version`, `assumptions`, `filters`, `forecasts`, `changes`, `scenarios`, `shown`, `offered`, `behind`, \
+`undo`, `redo` | what is set; `changes` in words; `undo`, `redo`: whether there is something to |
 | `moved` | `of`, `name`, `key`, `value` | what was set while a handle is held; `state` follows when it is let go |
 | `frame` | `stage`, `version`, `seq`, `trials`, `accepted`, `share`, `few`, `shapes`, `forecasts` | an answer; `few`: \
 from too few trials; `stage`: \
@@ -71,6 +72,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from xlmc.errors import XlmcError
+from xlmc.outputs.live.adjustments import NONE, PARTS
 
 __all__ = ["MOST_BYTES", "Message", "PageMessage", "ProtocolError", "read_message", "written"]
 
@@ -107,7 +109,7 @@ def _is_text(value: object) -> bool:
 
 
 def _is_value(value: object) -> bool:
-    return value is None or isinstance(value, bool) or _is_number(value)
+    return value is None or isinstance(value, bool) or value == NONE or _is_number(value)
 
 
 def _is_number(value: object) -> bool:
@@ -148,7 +150,7 @@ def _one_of(*words: str) -> Callable[[object], bool]:
     return lambda value: isinstance(value, str) and value in words
 
 
-_OF: Final = _one_of("assumption", "filter")
+_OF: Final = _one_of(*PARTS)
 
 _FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
     "hello": {"name": _is_text, "nonce": _is_text},

@@ -16,10 +16,14 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import XlmcError
 from xlmc.outputs.live.adjustments import (
+    LIMITS,
+    NONE,
+    REMOVABLE,
     SWITCHES,
     Adjustments,
     Amount,
     in_words,
+    is_own,
     own_values,
     usual_variants,
 )
@@ -47,7 +51,14 @@ from xlmc.outputs.live.jobs import (
 from xlmc.outputs.live.moving_models import KnownModels
 from xlmc.outputs.live.pace import Pace
 from xlmc.outputs.live.protocol import Message, PageMessage
-from xlmc.outputs.live.window_book import assumption_rows, book_message, filter_rows, known_scenario, scenario_rows
+from xlmc.outputs.live.window_book import (
+    assumption_rows,
+    book_message,
+    filter_rows,
+    known_scenario,
+    scenario_rows,
+    stated_rows,
+)
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
@@ -125,6 +136,7 @@ class Session:
             "version": self.version,
             "assumptions": assumption_rows(self.own, self.adjustments),
             "filters": filter_rows(self.own, self.adjustments),
+            "forecasts": stated_rows(self.own, self.adjustments),
             "changes": in_words(self.own.definitions, self.adjustments),
             "scenarios": list(scenario_rows(self.own.definitions, self.stored)),
             "shown": self.shown,
@@ -243,11 +255,14 @@ class Session:
         """Set numbers and switches; None for the workbook's own."""
         own = own_values(self.own.definitions, of, name)
         for key, value in values.items():
-            if key not in own or ((key in SWITCHES) != isinstance(value, bool) and value is not None):
+            fits = (key in SWITCHES) == isinstance(value, bool) and (value != NONE or key in REMOVABLE)
+            if key not in own or not (fits or value is None):
                 raise XlmcError(f"the workbook has no {of} {name!r} with {key!r} to be set")
         found = self.adjustments
         for key, value in values.items():
-            found = found.having(of, name, key, None if value == own[key] else value)
+            found = found.having(of, name, key, None if value is None or is_own(value, own[key]) else value)
+        if of == "filter":
+            _refuse_without_limit(found, name, own)
         self._seq = seq
         self._change(found)
 
@@ -496,6 +511,17 @@ class Session:
         for each in messages:
             if each["kind"] in ("frame", "rest", "part"):
                 self._last[f"{each['kind']} {each.get('tab', '')}"] = each
+
+
+def _refuse_without_limit(found: Adjustments, name: str, own: Mapping[str, object]) -> None:
+    """Refuse to take the last limit of a filter away: its cell would have to be TRUE then.
+
+    Raises:
+        XlmcError: none is left.
+    """
+    limits, given = LIMITS.keys() & own.keys(), found.filters.get(name, {})
+    if limits and all(given.get(key) == NONE for key in limits):
+        raise XlmcError(f"{name!r} would have no limit", hint="Switch Use off to leave the filter out")
 
 
 def _over(job: Job, how: str) -> Message:

@@ -10,7 +10,7 @@ from xlmc.montecarlo.definitions.definitions import Filter
 from xlmc.outputs.live.adjustments import LIMITS, assumption_numbers
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.definitions.definitions import Assumption
+    from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
     from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["what_changed"]
@@ -25,7 +25,7 @@ def what_changed(before: CompiledModel, after: CompiledModel) -> list[str]:
     found = [
         *_rows("assumption", _named(before.assumptions), _named(after.assumptions), _assumption),
         *_rows("filter", _filters(before), _filters(after), _filter),
-        *_names("forecast", _named(before.forecasts), _named(after.forecasts)),
+        *_rows("forecast", _named(before.forecasts), _named(after.forecasts), _forecast),
         *_names("check", _named(before.checks), _named(after.checks)),
         *_correlations(before, after),
         *_settings(before, after),
@@ -88,8 +88,22 @@ def _assumption(before: Assumption, after: Assumption) -> Iterator[str]:
 def _filter(before: Filter, after: Filter) -> Iterator[str]:
     if before.used != after.used:
         yield "used" if after.used else "not used"
-    elif any(getattr(before, key) != getattr(after, key) for key in LIMITS):
+    elif any(getattr(before, key) != getattr(after, key) for key in LIMITS) or _measured(before) != _measured(after):
         yield f"{limits_text(before)} → {limits_text(after)}"
+
+
+def _measured(filter_: Filter) -> object:
+    """Return what a row of evidence says was measured; otherwise None."""
+    evidence = filter_.evidence
+    return None if evidence is None else (evidence.error, evidence.reading, evidence.sizes)
+
+
+def _forecast(before: Forecast, after: Forecast) -> Iterator[str]:
+    if before.threshold != after.threshold:
+        values = ["none" if each.threshold is None else number_text(each.threshold) for each in (before, after)]
+        yield f"threshold {values[0]} → {values[1]}"
+    if before.central != after.central:
+        yield f"central range {100.0 * before.central:.12g} % → {100.0 * after.central:.12g} %"
 
 
 def _correlations(before: CompiledModel, after: CompiledModel) -> Iterator[str]:

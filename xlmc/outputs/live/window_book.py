@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, Final
 
 import numpy as np
@@ -12,13 +12,14 @@ from numpy.typing import NDArray
 from xlmc.analysis.results.statements.in_words import (
     changes_text,
     distribution_text,
-    evidence_text,
     limits_text,
     status,
 )
+from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
-from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.definitions.evidence import Law, Within
+from xlmc.montecarlo.definitions.tables.evidence_rows import check_sizes
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
@@ -26,12 +27,17 @@ from xlmc.montecarlo.statistics.estimate import finite, t_quantile
 from xlmc.outputs.live.adjustments import (
     BAND,
     LIMITS,
+    MEASURED,
+    NONE,
+    REMOVABLE,
     Adjustments,
     adjusted_definitions,
     adjustments_of,
     assumption_numbers,
     in_words,
+    measured_numbers,
     movable_limits,
+    own_values,
 )
 from xlmc.outputs.live.protocol import Message
 from xlmc.outputs.page.payload import CONFIDENCE
@@ -44,6 +50,7 @@ __all__ = [
     "known_scenario",
     "scenario_rows",
     "shapes_of",
+    "stated_rows",
 ]
 
 _ON_AXIS: Final = frozenset(
@@ -54,8 +61,8 @@ _ON_AXIS: Final = frozenset(
 _SHAPE_DRAWS: Final = 2_000
 _SHAPE_BARS: Final = 40
 _PROBABILITIES: Final = (np.arange(_SHAPE_DRAWS) + 0.5) / _SHAPE_DRAWS
-_OUTSIDE: Final = 0.35
-"""Room that an axis leaves on either side of the distribution, as a part of its width."""
+_FARTHEST: Final = 3.5
+"""Standard deviations up to which the error of a reading is drawn."""
 _STEPS: Final = 50.0
 """A step of a key is a power of ten, the largest of which a range has at least so many."""
 
@@ -76,7 +83,7 @@ def assumption_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[s
 def _assumption(
     model: CompiledModel, assumption: Assumption, own: Assumption, changed: Mapping[str, Any]
 ) -> dict[str, Any]:
-    numbers = [_number(assumption, own, key, heading, value) for key, heading, value in _numbers(assumption)]
+    numbers = [_number(assumption, key, heading, value) for key, (heading, value) in assumption_numbers(own).items()]
     values = [each["value"] for each in numbers if each["drags"] and each["value"] is not None]
     values += [] if assumption.base is None else [assumption.base]
     step = _step(max(values) - min(values) if values else 0.0, max(map(abs, values), default=1.0))
@@ -97,20 +104,33 @@ def _assumption(
     }
 
 
-def _numbers(assumption: Assumption) -> Iterator[tuple[str, str, Parameter]]:
-    for key, (heading, value) in assumption_numbers(assumption).items():
-        yield key, heading, value
+def _number(assumption: Assumption, key: str, heading: str, before: Parameter) -> dict[str, Any]:
+    value = assumption.given.get(key)
+    drags = assumption.data is None and (key in _ON_AXIS or (key[:1] == "p" and key[1:2].isdigit()))
+    return _handle(key, heading, value, before, drags=drags, cell=assumption.stated.get(key, ""))
 
 
-def _number(assumption: Assumption, own: Assumption, key: str, heading: str, value: Parameter) -> dict[str, Any]:
-    before = assumption_numbers(own)[key][1]
+def _handle(
+    key: str, heading: str, value: Parameter | None, before: Parameter | None, *, drags: bool, cell: str = ""
+) -> dict[str, Any]:
+    """Return a number that can be changed.
+
+    Args:
+        key: of the number.
+        heading: as it is read.
+        value: now; None for one that was taken away.
+        before: in the workbook.
+        drags: whether it lies on the axis of the quantity.
+        cell: what computes it, in words; by default its cell.
+    """
     return {
         "key": key,
         "heading": heading,
-        "value": None if isinstance(value, Cell) else value,
-        "own": None if isinstance(before, Cell) else before,
-        "cell": assumption.stated.get(key, str(value)) if isinstance(value, Cell) else "",
-        "drags": assumption.data is None and (key in _ON_AXIS or (key[:1] == "p" and key[1:2].isdigit())),
+        "value": None if isinstance(value, Cell) or value is None else finite(value),
+        "own": None if isinstance(before, Cell) or before is None else finite(before),
+        "cell": cell or str(value) if isinstance(value, Cell) else "",
+        "drags": drags,
+        "goes": key in REMOVABLE,
         "step": _step(0.0, abs(value)) if isinstance(value, float | int) else 1.0,
     }
 
@@ -150,58 +170,92 @@ def _shape(values: NDArray[np.float64]) -> dict[str, Any] | None:
 
 
 def filter_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, Any]]:
-    """Every filter with its limits as they are now, those that are not used among them; see `assumption_rows`."""
+    """Return every filter and row of evidence with its numbers as they are now, also what is not used; see
+    `assumption_rows`.
+    """
     definitions, now = own.definitions, adjusted_definitions(own.definitions, adjustments)
-    pairs = zip(_filters(now), _filters(definitions), strict=True)
-    rows = [_filter(each, before, before.name in definitions.switches) for each, before in pairs]
-    idle = [each for each in own.evidence if not each.used and each.can_be_used]
-    return [*rows, *(_idle_evidence(each, adjustments) for each in idle)]
+    idle = {each.name for each in own.evidence if not each.used and each.can_be_used}
+    pairs = zip(_filters(now, idle), _filters(definitions, idle), strict=True)
+    changed = {name for name, each in adjustments.filters.items() if each}
+    return [_filter(each, before, definitions, changed=each.name in changed) for each, before in pairs]
 
 
-def _filters(definitions: Definitions) -> tuple[Filter, ...]:
-    return *definitions.filters, *definitions.forecast_filters, *definitions.unused
+def _filters(definitions: Definitions, idle: Collection[str]) -> tuple[Filter, ...]:
+    """Return the filters, and what would be filters of the evidence that the workbook does not use."""
+    rows = (each for each in definitions.evidence if each.name in idle)
+    unused = (Filter(e.name, e.cell, e.row, because=e.source, evidence=e, used=e.used) for e in rows)
+    return *definitions.filters, *definitions.forecast_filters, *definitions.unused, *unused
 
 
-def _idle_evidence(evidence: Evidence, adjustments: Adjustments) -> dict[str, Any]:
-    """A row of evidence that the workbook does not use; where the window does, its reading is told with the answer."""
-    used = bool(adjustments.filters.get(evidence.name, {}).get("used", False))
-    return {
-        "name": evidence.name,
-        "cell": str(evidence.cell),
-        "keeps": "what agrees with its reading" if used else evidence_text(evidence),
-        "because": evidence.source,
-        "step": 1.0,
-        "changed": used,
-        "switches": True,
-        "used": used,
-        "limits": [],
-    }
-
-
-def _filter(filter_: Filter, own: Filter, switches: bool) -> dict[str, Any]:
-    given = [(key, getattr(filter_, key), before) for key, before in movable_limits(own).items()]
-    typed = [now for _, now, _ in given if not isinstance(now, Cell)]
+def _filter(filter_: Filter, own: Filter, definitions: Definitions, *, changed: bool) -> dict[str, Any]:
+    limits = list(_limits(filter_, own, definitions))
+    law = _law(filter_)
+    typed = [each["value"] for each in limits if each["drags"] and each["value"] is not None]
+    shape = None if law is None else _shape_of_error(law)
+    typed += [] if shape is None else [shape["low"], shape["high"]]
     step = _step(max(typed) - min(typed) if len(typed) > 1 else 0.0, max(map(abs, typed), default=1.0) or 1.0)
+    unclear = filter_.evidence is not None and law is None and filter_.used
     return {
         "name": filter_.name,
         "cell": str(filter_.cell),
-        "keeps": limits_text(filter_),
+        "keeps": "what agrees with its reading" if unclear else limits_text(filter_),
         "because": " · ".join(filter(None, (*_reach(filter_), filter_.because))),
         "step": step,
-        "changed": filter_.used != own.used or any(now != before for _, now, before in given),
-        "switches": switches,
+        "shape": shape,
+        "changed": changed,
+        "switches": filter_.name in definitions.switches,
         "used": filter_.used,
-        "limits": [
-            {
-                "key": key,
-                "heading": LIMITS[key],
-                "value": None if isinstance(now, Cell) else finite(now),
-                "own": None if isinstance(before, Cell) else finite(before),
-                "cell": str(now) if isinstance(now, Cell) else "",
-            }
-            for key, now, before in given
-        ],
+        "limits": limits,
     }
+
+
+def _limits(filter_: Filter, own: Filter, definitions: Definitions) -> Iterator[dict[str, Any]]:
+    """Return the numbers of a filter that can be changed: its limits, or the reading and the error of evidence."""
+    evidence = next((each for each in definitions.evidence if own.evidence and each.name == own.name), None)
+    if evidence is None or filter_.evidence is None or own.evidence is None:
+        for key, before in movable_limits(own).items():
+            yield _handle(key, LIMITS[key], getattr(filter_, key), before, drags=True)
+        return
+    now, known = measured_numbers(filter_.evidence), measured_numbers(own.evidence)
+    for key, before in measured_numbers(evidence).items():
+        value = before if now[key] == known[key] else now[key]  # a cell, where a formula computes it
+        yield _handle(key, MEASURED[key], value, before, drags=key == "reading")
+
+
+def _law(filter_: Filter) -> Law | None:
+    """Return the law of evidence; None where there is none, or where its numbers are none."""
+    evidence = filter_.evidence
+    if evidence is None or not isinstance(evidence.reading, float) or any(evidence.cells):
+        return None
+    try:
+        check_sizes(evidence, evidence.reading, evidence.sizes)  # type: ignore[arg-type]  # they are no cells
+    except DefinitionError:
+        return None
+    return evidence.law
+
+
+def _shape_of_error(law: Law) -> dict[str, Any] | None:
+    """Return how likely a quantity is by its reading alone, as `shapes_of`; None where it is bounded on one side."""
+    if isinstance(law, Within):
+        return None if law.low is None or law.high is None else {"low": law.low, "high": law.high, "heights": [1.0]}
+    z = np.linspace(-_FARTHEST, _FARTHEST, _SHAPE_BARS + 1)
+    m = law.reading * np.exp(z * law.sigma) if law.logarithmic else law.reading + z * law.sigma
+    edges = np.linspace(m[0], m[-1], _SHAPE_BARS + 1)
+    heights = np.exp(law.log_weight(0.5 * (edges[1:] + edges[:-1])))
+    return {"low": float(m[0]), "high": float(m[-1]), "heights": [round(float(h), 3) for h in heights]}
+
+
+def stated_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, Any]]:
+    """Return how every forecast is stated now: its threshold, None for none, and its central range in percent."""
+    rows = []
+    for each in own.forecasts:
+        values = own_values(own.definitions, "forecast", each.name)
+        given = adjustments.forecasts.get(each.name, {})
+        threshold = given.get("threshold", values["threshold"])
+        central = given.get("central", values["central"])
+        shown = None if threshold == NONE else threshold
+        rows.append({"name": each.name, "threshold": shown, "central": central, "changed": bool(given)})
+    return rows
 
 
 def _reach(filter_: Filter) -> Iterator[str]:

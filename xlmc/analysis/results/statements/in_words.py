@@ -15,10 +15,12 @@ from xlmc.montecarlo.definitions.scenarios import (
     Drawn,
     Frozen,
     Limits,
+    Measured,
     Numbers,
     Range,
     Redrawn,
     Scenario,
+    Stated,
     Switched,
     Tabulated,
     Typed,
@@ -184,7 +186,7 @@ def _change_text(change: Change) -> str:
             return " ".join([name, *(f"{word} {_plain_number(end)}" for word, end in ends if end is not None)])
         case Band(name, low, high):
             return f"{name} from P{show(low)} to P{show(high)}"
-        case Numbers(name, values) | Limits(name, values):
+        case Numbers(name, values) | Limits(name, values) | Measured(name, values) | Stated(name, values):
             words = (
                 f"{key.replace('_', ' ')} {_plain_number(value)}" for key, value in values.items() if value is not None
             )

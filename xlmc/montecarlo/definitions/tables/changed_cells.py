@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.workbook.workbook import CellValue, Workbook
-from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Filter, Parameter
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Filter, Forecast, Parameter
+from xlmc.montecarlo.definitions.evidence import SIZES
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.filters import LIMITS
 from xlmc.montecarlo.definitions.tables.reserved_tables import definition_tables
@@ -18,7 +19,7 @@ NO_TABLE = "of a table"
 
 
 def cells_that_change(
-    workbook: Workbook, old: Assumption | Filter, new: Assumption | Filter
+    workbook: Workbook, old: Assumption | Filter | Forecast, new: Assumption | Filter | Forecast
 ) -> tuple[dict[Cell, CellValue], list[str]]:
     """Return the cells to be typed into, so that a row says what `new` says in place of `old`.
 
@@ -54,7 +55,9 @@ def _row_of(workbook: Workbook, first: Cell) -> Row | None:
     return None if table is None else Row(workbook, table, first.row)
 
 
-def _columns(old: Assumption | Filter, new: Assumption | Filter) -> Iterator[tuple[tuple[str, ...], CellValue]]:
+def _columns(
+    old: Assumption | Filter | Forecast, new: Assumption | Filter | Forecast
+) -> Iterator[tuple[tuple[str, ...], CellValue]]:
     """Return the headings of each column that says something else, and what it says."""
     if isinstance(old, Assumption) and isinstance(new, Assumption):
         if old.frozen != new.frozen:
@@ -72,6 +75,18 @@ def _columns(old: Assumption | Filter, new: Assumption | Filter) -> Iterator[tup
             yield ("Units",), new.units
         if old.source != new.source:
             yield ("Source",), new.source
+    elif isinstance(old, Forecast) and isinstance(new, Forecast):
+        if old.central != new.central:
+            yield ("Range %",), float(f"{100.0 * new.central:.12g}")
+        if old.threshold != new.threshold:
+            yield ("Threshold",), new.threshold
+    elif isinstance(old, Filter) and isinstance(new, Filter) and old.evidence and new.evidence:
+        if old.evidence.reading != new.evidence.reading:
+            yield ("Reading",), _number(new.evidence.reading)
+        for key, heading in SIZES.items():
+            if old.evidence.sizes.get(key) != new.evidence.sizes.get(key):
+                headings = (heading, "±") if key == "plus_minus" else (heading,)
+                yield headings, _number(new.evidence.sizes.get(key))
     elif isinstance(old, Filter) and isinstance(new, Filter):
         for key, heading in LIMITS.items():
             if getattr(old, key) != getattr(new, key):

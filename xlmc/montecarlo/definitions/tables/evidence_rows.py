@@ -110,7 +110,10 @@ def _evidence(
     notes = row.notes(_KNOWN)
     if not used:
         why = USE_IS_OFF if row.filled("Reading") else "it has no reading"
-        return Evidence(name, cell, row.where, None, error, {}, source, why, notes)
+        aside = Findings()  # mistakes of a row that is off do not matter
+        reading, given = aside.attempt(parameter, row, "Reading"), aside.attempt(_sizes, row)
+        error = aside.attempt(_error, row) or error
+        return Evidence(name, cell, row.where, reading, error, given or {}, source, why, notes)
     reading = findings.attempt(parameter, row, "Reading")
     sizes = findings.attempt(_sizes, row)
     findings.attempt(_refuse_constant, row, cell, computed)

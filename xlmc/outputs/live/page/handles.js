@@ -212,13 +212,15 @@ function typedRange(text) {
   return { low: Number((a - off).toPrecision(12)), high: Number((a + off).toPrecision(12)), middle: a, share };
 }
 
+const NONE = "none"; // what is said for a limit that is taken away
+
 /**
  * A box for one number: typed, or stepped with the arrow keys. `set(value, held)` takes it; `setRange(range)` takes two
- * ends that were typed into it, and gives why they cannot be taken.
+ * ends that were typed into it, and gives why they cannot be taken. A number that `goes` is taken away by a blank box.
  */
 class NumberBox {
-  constructor(label, units, set, { hidden = "", percent = units === "%", setRange = null } = {}) {
-    Object.assign(this, { set, setRange, percent, step: 1, value: null });
+  constructor(label, units, set, { hidden = "", percent = units === "%", setRange = null, goes = false } = {}) {
+    Object.assign(this, { set, setRange, percent, goes, step: 1, value: null });
     this.why = make("span", { class: "why", role: "alert", id: Numbered.id("why") });
     this.input = make("input", { type: "text", inputmode: "text", autocomplete: "off", spellcheck: "false",
       "aria-describedby": this.why.id });
@@ -226,7 +228,8 @@ class NumberBox {
     if (hidden) shown.append(make("span", { class: "aside", text: ` of ${hidden}` }));
     this.root = make("span", { class: "number-box" },
       make("label", {}, shown, this.input, make("span", { class: "unit", text: units })), this.why);
-    this.hint = setRange ? "Both ends at once: 0.6 to 0.8, or 0.7 ± 10 %" : "";
+    this.hint = [setRange ? "Both ends at once: 0.6 to 0.8, or 0.7 ± 10 %" : "", goes ? "Blank: none" : ""].filter(Boolean).join("; ");
+    if (goes) this.input.placeholder = NONE;
     this.input.addEventListener("change", () => this.type());
     this.input.addEventListener("keydown", (event) => this.press(event));
   }
@@ -251,6 +254,11 @@ class NumberBox {
 
   type() {
     const text = this.input.value;
+    if (this.goes && !text.trim()) {
+      this.refuse("");
+      this.set(NONE, false);
+      return;
+    }
     const range = typedRange(text);
     if (range) {
       this.refuse(this.setRange ? this.setRange(range) : "Type one number here.");

@@ -42,8 +42,8 @@ class AssumptionCard {
   set(key, value, held, event) {
     const number = this.row.numbers.find((each) => each.key === key);
     if (number) {
-      number.value = value;
-      this.boxes.get(key)?.update(value, this.stepOf(number));
+      number.value = value === NONE ? null : value;
+      this.boxes.get(key)?.update(number.value, this.stepOf(number));
     }
     this.sent(this.wire.set("assumption", this.row.name, key, value, held), event);
   }
@@ -89,11 +89,11 @@ class AssumptionCard {
     for (const number of row.numbers) {
       if (!this.boxes.has(number.key)) {
         const box = new NumberBox(number.heading, "", (value) => this.set(number.key, value, false, null),
-          { hidden: row.name, percent: row.units === "%", setRange: ENDS.includes(number.key) ? (range) => this.setRange(range) : null });
+          { hidden: row.name, percent: row.units === "%", goes: number.goes, setRange: ENDS.includes(number.key) ? (range) => this.setRange(range) : null });
         this.boxes.set(number.key, box);
         this.held.before(box.root);
       }
-      const why = number.value === null ? `computed in ${number.cell}` : "";
+      const why = number.cell && `computed in ${number.cell}`;
       this.boxes.get(number.key).update(number.value, this.stepOf(number), { off: row.frozen, why });
     }
     this.bands.hidden = row.band === null;
@@ -128,16 +128,33 @@ class FilterCard {
 
   set(key, value, held, event) {
     const limit = this.row.limits.find((each) => each.key === key);
-    limit.value = value;
-    this.boxes.get(key)?.update(value, this.row.step);
+    limit.value = value === NONE ? null : value;
+    this.boxes.get(key)?.update(limit.value, this.stepOf(limit));
     this.sent(this.wire.set("filter", this.row.name, key, value, held), event);
   }
 
-  setRange({ low, high }) {
+  stepOf(limit) {
+    return limit.drags ? this.row.step : limit.step;
+  }
+
+  /** Both limits at once, or a reading with its error. */
+  setRange({ low, high, middle, share }) {
     const given = this.row.limits.map(({ key }) => key);
+    if (given.includes("reading")) return this.setReading(given, low, high, middle, share);
     const [lower, upper] = [["at_least", "above"], ["at_most", "below"]].map((keys) => keys.find((key) => given.includes(key)));
     if (!lower || !upper) return "This filter has one limit: type one number.";
     this.sent(setAll(this.wire, "filter", this.row.name, { [lower]: low, [upper]: high }), null);
+    return "";
+  }
+
+  /** 30 ± 2 and 28 to 32 are a reading of 30, plus or minus 2; 30 ± 5 % is one with an error in percent. */
+  setReading(given, low, high, middle, share) {
+    const reading = middle ?? Number(((low + high) / 2).toPrecision(12));
+    const off = Number((Math.abs(high - low) / 2).toPrecision(12));
+    const percent = share && given.includes("percent");
+    if (!percent && !given.includes("plus_minus")) return "This error is given in another way: type its numbers one by one.";
+    const error = percent ? { percent: Number(((100 * off) / Math.abs(reading)).toPrecision(12)) } : { plus_minus: off };
+    this.sent(setAll(this.wire, "filter", this.row.name, { reading, ...error }), null);
     return "";
   }
 
@@ -152,7 +169,7 @@ class FilterCard {
   update(row) {
     if (this.track.held !== null) return;
     this.row = row;
-    const numbers = row.limits.filter((each) => each.value !== null);
+    const numbers = row.limits.filter((each) => each.drags && each.value !== null);
     this.track.box.hidden = !numbers.length;
     this.track.update({ numbers, step: row.step, shape: row.shape ?? null, own: null, mark: null, off: !row.used });
     this.switch.hidden = !row.switches;
@@ -163,11 +180,12 @@ class FilterCard {
       if (!this.boxes.has(limit.key)) {
         const heading = limit.heading[0].toUpperCase() + limit.heading.slice(1);
         const box = new NumberBox(heading, "", (value) => this.set(limit.key, value, false, null),
-          { hidden: row.name, setRange: (range) => this.setRange(range) });
+          { hidden: row.name, goes: limit.goes, setRange: limit.drags ? (range) => this.setRange(range) : null });
         this.boxes.set(limit.key, box);
         this.numbers.append(box.root);
       }
-      this.boxes.get(limit.key).update(limit.value, row.step, { off: !row.used, why: limit.value === null ? `computed in ${limit.cell}` : "" });
+      const why = limit.cell && `computed in ${limit.cell}`;
+      this.boxes.get(limit.key).update(limit.value, this.stepOf(limit), { off: !row.used, why });
     }
     this.root.classList.toggle("changed", row.changed);
     this.back.hidden = !row.changed;
@@ -243,7 +261,7 @@ class LeftSide {
   }
 
   moved({ of, name, key, value }) {
-    this[`${of}s`].get(name)?.moved(key, value);
+    this[`${of}s`]?.get(name)?.moved(key, value);
   }
 
   /** The distributions that differ from the workbook's, with an answer. */

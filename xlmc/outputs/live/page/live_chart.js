@@ -28,7 +28,11 @@ function forecastElement({ name, units, marks }, number) {
       box("Certainty", "share", "%"), make("button", { type: "button", class: "reset", text: "Central range" })),
     make("p", { class: "threshold" }, make("label", {}, "Above ", make("input", { type: "text", autocomplete: "off",
       spellcheck: "false", class: "above", "aria-label": `Threshold of ${name}` }), units ? ` ${units}` : ""),
-    " ", make("output", { class: "beyond" })),
+    " ", make("output", { class: "beyond" }), " ",
+    make("label", {}, "Central range ", make("input", { type: "text", autocomplete: "off", spellcheck: "false",
+      class: "central", "aria-label": `Central range of ${name}, in percent` }), " %"), " ",
+    make("button", { type: "button", class: "back", hidden: true, text: "As in the workbook",
+      "aria-label": `Threshold and central range of ${name} as in the workbook` })),
     make("p", { class: "fault", role: "alert" }), make("p", { class: "certainty" }));
   const chart = make("div", { class: "chart", role: "group", "aria-label": `Chart of ${name}, with two grabbers` });
   return make("article", { class: "forecast", id: about },
@@ -58,6 +62,8 @@ function sharesElement({ name, shares }) {
 
 class LivePanel extends Panel {
   static behind = "";
+  static set = () => {}; // tells the server how a forecast is stated: name, key and value
+  static back = () => {}; // that it is stated as in the workbook: name
 
   constructor(element, forecast, z) {
     super(element, forecast, z);
@@ -69,7 +75,44 @@ class LivePanel extends Panel {
   listen(element) {
     super.listen(element);
     this.find(".together").addEventListener("change", ({ target }) => { this.together = Number(target.value); });
-    this.find(".above").addEventListener("change", () => this.tellAbove());
+    this.find(".above").addEventListener("change", () => this.typeThreshold());
+    this.find(".central").addEventListener("change", () => this.typeCentral());
+    this.find(".back").addEventListener("click", () => LivePanel.back(this.forecast.name));
+  }
+
+  /** How the forecast is stated now; what is being typed stays. */
+  stated({ threshold, central, changed }) {
+    const texts = { ".above": threshold === null ? "" : this.kept("above", threshold), ".central": String(central) };
+    for (const [place, text] of Object.entries(texts)) {
+      const box = this.find(place);
+      if (document.activeElement === box && box.value !== box.dataset.shown) continue;
+      box.value = box.dataset.shown = text;
+      box.removeAttribute("aria-invalid");
+    }
+    this.find(".back").hidden = !changed;
+    this.tellAbove();
+  }
+
+  /** The threshold that was typed; a blank box is none. */
+  typeThreshold() {
+    const box = this.find(".above");
+    const value = box.value.trim() ? formTyped(box.value, null, this.forecast.form) : NONE;
+    this.tellAbove();
+    if (value !== NONE && !Number.isFinite(value)) return;
+    box.dataset.shown = box.value;
+    LivePanel.set(this.forecast.name, "threshold", value);
+  }
+
+  /** The central range that was typed; a blank box is the workbook's. */
+  typeCentral() {
+    const box = this.find(".central");
+    const value = box.value.trim() ? typed(box.value, null) : undefined;
+    const wrong = value !== undefined && !(value > 1 && value < 100);
+    box.toggleAttribute("aria-invalid", wrong);
+    this.find(".fault").textContent = wrong ? "A central range lies above 1 and below 100 %." : "";
+    if (wrong) return;
+    box.dataset.shown = box.value;
+    LivePanel.set(this.forecast.name, "central", value ?? null);
   }
 
   /** The fitted distributions of a run at rest; there are none while a handle moves. */

@@ -37,6 +37,8 @@ class RightSide {
       this.pair = pair;
       this.look();
     });
+    LivePanel.set = (name, key, value) => wire.set("forecast", name, key, value, false);
+    LivePanel.back = (name) => wire.say({ kind: "reset", of: "forecast", name });
     this.scenarios = new ScenarioView(this.places.scenarios, wire);
     this.hand = new HandView(this.places.studies, wire);
     this.watch = new IntersectionObserver((entries) => {
@@ -138,6 +140,7 @@ class RightSide {
         const element = forecastElement(forecast, Numbered.id("forecast"));
         entry.place.replaceChildren(element);
         entry.panel = new LivePanel(element, forecast, this.z);
+        entry.panel.stated(this.stated.get(name));
         element.querySelector(".fit").addEventListener("focus", () => {
           if (this.fits) return;
           this.fits = true;
@@ -181,6 +184,8 @@ class RightSide {
 
   state(message) {
     LivePanel.behind = message.behind;
+    this.stated = new Map(message.forecasts.map((row) => [row.name, row]));
+    for (const [name, { panel }] of this.panels) if (this.stated.has(name)) panel?.stated(this.stated.get(name));
     this.scenarios.state(message);
     this.hand.state(message);
     const drawn = message.assumptions.filter(({ status }) => status === "drawn").map(({ name }) => name);

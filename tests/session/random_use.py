@@ -28,8 +28,8 @@ PATIENCE = 120.0
 
 TABS = ("charts", "matters", "pairs", "tables", "scenarios", "studies")
 KINDS = (
-    "move move move hold numbers freeze band limit use reset keep keep drop show undo variants compare view view pin"
-    " stop print save book book reload restart restore burst"
+    "move move move hold numbers freeze band limit limit reading state use reset keep keep drop show undo variants"
+    " compare view view pin stop print save book book reload restart restore burst"
 )
 """What a client does next; twice what is done more often."""
 
@@ -50,13 +50,16 @@ HEADINGS = (
 
 
 class Book:
-    """A workbook of five assumptions, two answers, two filters and a row of evidence, that is changed at random."""
+    """A workbook of five assumptions, two answers, two filters and two rows of evidence, that is changed at random."""
 
     def __init__(self, path, dice):
         self.path, self.dice, self.names = path, dice, iter(range(1, 10**9))
         self.rows = [self.row(cell) for cell in range(1, 6)]
-        self.filters = [["possible", "=M!B1", 1.0, None, None], ["slow", "=M!B2", None, 80.0, None]]
-        self.evidence = ["camera", "=M!B1", 30.0, 25.0, None]
+        self.filters = [["possible", "=M!B1", 1.0, None, None], ["slow", "=M!B2", 0.0, 80.0, None]]
+        self.evidence = [
+            ["camera", "=M!B1", 30.0, "Uniform", 25.0, None, None],
+            ["witness", "=M!B2", 40.0, "Normal", None, 25.0, None],
+        ]
         self.write()
 
     def row(self, cell):
@@ -73,18 +76,23 @@ class Book:
         for each in self.rows:
             low, high = each["low"], each["low"] + 2.0
             numbers = {
-                "Uniform": (low, high, None, None, None),
-                "Triangular": (low, high, low + 1.0, None, None),
-                "Normal": (None, None, None, low + 1.0, 0.5),
+                "Uniform": (low, high, None, None, None, None, None),
+                "Triangular": (low, high, low + 1.0, None, None, None, None),
+                "Normal": (None, None, None, low + 1.0, 0.5, low, low + 2.5),
             }[each["kind"]]
-            rows.append(
-                [each["name"], f"=M!A{each['cell']}", each.get("typed", each["kind"]), *numbers, None, None, None]
-            )
+            rows.append([each["name"], f"=M!A{each['cell']}", each.get("typed", each["kind"]), *numbers, None])
         tables = {
             "xlmc_assumptions": rows,
-            "xlmc_forecasts": [["Name", "Cell"], ["sum", "=M!B1"], ["product", "=M!B2"]],
+            "xlmc_forecasts": [
+                ["Name", "Cell", "Threshold", "Range %"],
+                ["sum", "=M!B1", None, None],
+                ["product", "=M!B2", 40.0, 90.0],
+            ],
             "xlmc_filters": [["Name", "Cell", "At least", "At most", "Use"], *self.filters],
-            "xlmc_evidence": [["Name", "Cell", "Reading", "Plus or minus", "Use"], self.evidence],
+            "xlmc_evidence": [
+                ["Name", "Cell", "Reading", "Error", "Plus or minus", "Std dev", "Use"],
+                *self.evidence,
+            ],
             "xlmc_settings": [["Setting", "Value"], ["Trials", 1_000]],
         }
         top = 1
@@ -108,7 +116,7 @@ class Book:
         """Change one thing of it, as a person or a program does; in the end the file is whole and good."""
         dice, row = self.dice, self.dice.choice(self.rows)
         match dice.choice(
-            ("rename", "remove", "kind", "range", "filter", "half", "wrong", "gone", "lock", "junk", "use")
+            ("rename", "remove", "kind", "range", "filter", "reading", "half", "wrong", "gone", "lock", "junk", "use")
         ):
             case "rename":
                 row["name"] = f"input {next(self.names)}"
@@ -120,8 +128,10 @@ class Book:
                 row["low"] = round(dice.uniform(2.0, 9.0), 2)
             case "filter":
                 self.filters[0][2] = round(dice.uniform(0.0, 15.0), 1)
+            case "reading":
+                dice.choice(self.evidence)[2] = round(dice.uniform(20.0, 50.0), 1)
             case "use":
-                each = dice.choice([*self.filters, self.evidence])
+                each = dice.choice([*self.filters, *self.evidence])
                 each[-1] = dice.choice((None, "no", True))
             case "half":
                 data = self.data()
@@ -148,6 +158,18 @@ class Book:
                 free = {1, 2, 3, 4, 5} - {each["cell"] for each in self.rows}
                 self.rows += [self.row(cell) for cell in sorted(free)[:1]]
         self.write()
+
+
+READING = {"reading": (20.0, 50.0), "plus_minus": (-0.5, 30.0), "std_dev": (5.0, 30.0)}
+"""Key of a number of evidence -> where it is moved to."""
+
+
+def _handles(state):
+    """Kind of row, row and number of all that a state has handles for on the left."""
+    for row in state["assumptions"]:
+        yield from (("assumption", row, number) for number in row["numbers"])
+    for row in state["filters"]:
+        yield from (("filter", row, number) for number in row["limits"])
 
 
 class Use:
@@ -193,6 +215,7 @@ class Use:
         self.done.append((place, what))
         row = dice.choice(state["assumptions"])
         numbers = [each for each in row["numbers"] if each["value"] is not None]
+        goes = [(of, r["name"], n["key"]) for of, r, n in _handles(state) if n["goes"]]
         if what in ("move", "hold", "burst") and numbers:
             number = dice.choice(numbers)
             value = round(number["value"] + dice.uniform(-0.7, 0.7), 3)
@@ -225,6 +248,16 @@ class Use:
             elif filter_["limits"]:
                 limit = dice.choice(filter_["limits"])
                 self._set(client, "filter", filter_["name"], limit["key"], round(dice.uniform(0, 90), 1))
+                if goes and dice.random() < 0.5:
+                    self._set(client, *dice.choice(goes), "none")
+        elif what == "reading":
+            readings = [(of, r["name"], n["key"]) for of, r, n in _handles(state) if n["key"] in READING]
+            of, name, key = dice.choice(readings)
+            self._set(client, of, name, key, round(dice.uniform(*READING[key]), 2))
+        elif what == "state":
+            name = dice.choice(["sum", "product"])
+            key, values = dice.choice([("threshold", ["none", 0.0, 25.0, None]), ("central", [80.0, 100.0, None])])
+            self._set(client, "forecast", name, key, dice.choice(values))
         elif what == "reset":
             client.say("reset", of="assumption", name=dice.choice(["", row["name"]]))
         elif what == "keep":

@@ -268,7 +268,7 @@ def test_a_draw_in_a_cell(tmp_path, subtests):
         ([Stated("Nisan impact speed", {"threshold": 3.0})], "there is no forecast 'Nisan impact speed'"),
         (
             [Stated("Nissan impact speed", {"central": 0.5})],
-            "a central range of 0.5 % of 'Nissan impact speed' must be",
+            "a central range of 0.5 % of 'Nissan",
         ),
     ],
 )

@@ -12,7 +12,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import openpyxl
-from live_books import simple, wide_book
+from live_books import book_of_readings, simple, wide_book
 from simulated import simulated
 from websockets.sync.server import serve
 
@@ -738,7 +738,7 @@ def test_the_probability_above_a_threshold_is_said_at_once_and_follows(chromium,
         return int((values > threshold).sum()), values.size
 
     share = "document.querySelector('.beyond').textContent"
-    page.type(page.one(".above"), "18,5")
+    page.at_rest(lambda: page.type(page.one(".above"), "18,5"))
     above, trials = said(18.5)
     exact = page.run("return Live.right.panels.values().next().value.panel.trials.reached(18.5, true).doubt")
     found = page.run(f"return {share}")
@@ -752,6 +752,52 @@ def test_the_probability_above_a_threshold_is_said_at_once_and_follows(chromium,
     assert abs(count - above) <= 3
     page.type(page.one(".above"), "much")
     assert "no number" in page.run(f"return {share}")
+
+
+def test_a_reading_is_dragged_limits_go_and_answers_are_stated_otherwise(chromium, running, tmp_path):
+    page = Page(chromium, running(book=book_of_readings(tmp_path / "case.xlsx")))
+
+    def said():
+        return set(page.changes)
+
+    at_40 = page.card("Filter at 40 ft")
+    page.at_rest(lambda: page.type(page.box(at_40, "Reading"), "32 ± 2.5"))
+    assert said() == {"at 40 ft: reading 31 → 32", "at 40 ft: plus or minus 3 → 2.5"}
+    assert "reads 32, uniform (Plus or minus 2.5): from 29.5 to 34.5" in at_40.text
+    page.at_rest(lambda: page.slider("reading of at 40 ft").send_keys("\ue014"))
+    assert page.run("return Live.state.filters.find(({ name }) => name === 'at 40 ft').limits[0].value") > 32
+    page.type(page.box(page.card("Filter witness"), "Reading"), "60 ± 5")
+    assert "another way" in page.card("Filter witness").text
+    page.at_rest(lambda: page.click(page.button("As in the workbook", ".card.changed")))
+    page.at_rest(lambda: page.type(page.box(page.card("v"), "Upper cutoff"), " "))
+    assert said() == {"v: Upper cutoff 38 → none"}
+    box = page.box(page.card("v"), "Upper cutoff")
+    assert (box.get_attribute("value"), box.get_attribute("placeholder")) == ("", "none")
+    page.at_rest(lambda: page.click(page.one("#undo")))
+    assert float(box.get_attribute("value")) == 38.0
+    possible = page.card("Filter possible")
+    page.at_rest(lambda: page.type(page.box(possible, "At most"), " "))
+    page.type(page.box(possible, "At least"), " ")
+    page.until("document.querySelector('#troubles').textContent.includes('would have no limit')")
+    assert said() == {"possible: at most 80 → none"}
+    page.at_rest(lambda: page.click(page.one("#undo")))
+
+    speed = page.of("article.forecast", "each.querySelector('h3').innerText === given[0]", "speed")
+    above, central = (speed.find_element("css selector", place) for place in (".above", ".central"))
+    assert (above.get_attribute("value"), central.get_attribute("value")) == ("35", "51")
+    page.at_rest(lambda: page.type(above, "32"))
+    assert "P(speed > 32" in page.one(".statements").text
+    page.type(central, "100")
+    assert central.get_attribute("aria-invalid") is not None
+    page.at_rest(lambda: page.type(central, "90"))
+    assert central.get_attribute("aria-invalid") is None
+    assert said() == {"speed: threshold 35 → 32", "speed: central range 51 % → 90 %"}
+    assert "Central 90 % range" in speed.text
+    page.at_rest(lambda: page.type(above, " "))
+    assert above.get_attribute("value") == ""
+    page.at_rest(lambda: page.click(page.button("As in the workbook", ".threshold")))
+    assert page.changes == []
+    assert (above.get_attribute("value"), central.get_attribute("value")) == ("35", "51")
 
 
 def test_print_prints_the_page_of_results_of_what_is_shown(chromium, running, tmp_path):

@@ -514,7 +514,7 @@ def test_evidence_has_no_limit_to_be_moved(tmp_path):
     session = Session(model)
     (row,) = (each for each in filter_rows(model, session.adjustments) if each["name"] == "EDR")
     assert [each["key"] for each in row["limits"]] == ["reading", "plus_minus"]
-    assert row["keeps"] == "reads 12, uniform (Plus or minus 1): from 11 to 13"
+    assert row["says"] == "reads 12, uniform (Plus or minus 1): from 11 to 13"
     with pytest.raises(XlmcError, match="no filter 'EDR' with 'at_most' to be set"):
         session.receive(change("EDR", "at_most", 14.0, of="filter"))
     session.receive(PageMessage("variants", {}))

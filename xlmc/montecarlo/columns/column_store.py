@@ -298,6 +298,7 @@ class ColumnStore:
     def _write(self) -> None:
         before, self._folder = self._folder, self._folder or Folder()
         for key, file in self._files.items():
+            checkpoint()
             self._folder.append(file, [self._added(key)])
             self._sizes[key] = 0
             if before is None:  # these may be somebody's columns

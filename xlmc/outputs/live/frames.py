@@ -208,6 +208,8 @@ def _texts(label: str, now: Estimate, before: Estimate | None, form: Form) -> tu
     if form.kind is Kind.DATE:
         return written(now), written(before), sign + span_text(abs(apart))
     decimals = form.decimals_of_both(now, before)
+    if decimals is None and apart:  # two numbers without an error, of which six digits are shown
+        apart = round(apart, 5 - math.floor(math.log10(max(abs(now.value), abs(before.value)))))
     shown, old = (form.estimate(each, decimals) for each in (now, before))
     return shown, old, sign + form.number(abs(apart), decimals)
 

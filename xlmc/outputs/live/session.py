@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import XlmcError
@@ -103,6 +103,7 @@ class Session:
         self.behind: RunResult | None = None
         self.behind_is = "the workbook as it was opened"
         self._behind_of: tuple[int, Adjustments] | None = None
+        self._rest_drawn: tuple[int, Adjustments] | None = None
         self.view = View(tuple(each.name for each in model.forecasts[:OPENS_WITH]))
         self._pin_next = True
         self._dragged = False
@@ -379,6 +380,11 @@ class Session:
         return id(self.own), self.adjustments
 
     @property
+    def _drawn(self) -> tuple[int, Adjustments]:
+        """What the trials depend on: all but how answers are stated."""
+        return id(self.own), replace(self.adjustments, forecasts={})
+
+    @property
     def _compared(self) -> RunResult | None:
         """The state to be drawn behind; None where it is the one in front."""
         return None if self._behind_of == self._now else self.behind
@@ -389,7 +395,7 @@ class Session:
         return self.version, self.view.forecasts, self.view.fits, id(self._compared)
 
     def _wants(self, stage: str) -> bool:
-        if self._done.get(stage) == self.version:
+        if self._done.get(stage) == self.version or (stage != "rest" and self._drawn == self._rest_drawn):
             return False
         if stage == "sketch":
             shown = any(tab.key == SKETCHED for tab in self.view.tabs)
@@ -462,7 +468,7 @@ class Session:
         found = list(outcome.messages)
         self._moving = outcome.simulation if job.stage == "moving" and job.version == self.version else None
         if job.stage == "rest" and job.version == self.version:
-            self.rest, self._sketch_seconds = outcome.simulation, 0.0
+            self.rest, self._sketch_seconds, self._rest_drawn = outcome.simulation, 0.0, self._drawn
             if self._pin_next and not self.adjustments and outcome.simulation is not None:
                 self.behind, self._behind_of, self._pin_next = outcome.simulation, self._now, False
         self._remember(found)

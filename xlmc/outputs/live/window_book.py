@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import Any, Final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,6 +59,9 @@ _ON_AXIS: Final = frozenset(
 )
 """Parameters that are values of the quantity itself, and can be dragged along its axis; percentiles are, too."""
 
+_OWN_ROWS: Final[WeakKeyDictionary[CompiledModel, dict[str, dict[str, Any]]]] = WeakKeyDictionary()
+"""The rows of assumptions that are as in the workbook: every state has many of them."""
+
 _SHAPE_DRAWS: Final = 2_000
 _SHAPE_BARS: Final = 40
 _PROBABILITIES: Final = (np.arange(_SHAPE_DRAWS) + 0.5) / _SHAPE_DRAWS
@@ -76,8 +80,16 @@ def assumption_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[s
     """
     now = adjusted_definitions(own.definitions, adjustments)
     changed = adjustments.assumptions
-    pairs = zip(now.assumptions, own.assumptions, strict=True)
-    return [_assumption(own, each, before, changed.get(each.name, {})) for each, before in pairs]
+    known = _OWN_ROWS.setdefault(own, {})
+    rows = []
+    for each, before in zip(now.assumptions, own.assumptions, strict=True):
+        if each is not before:
+            rows.append(_assumption(own, each, before, changed.get(each.name, {})))
+        elif each.name in known:
+            rows.append(known[each.name])
+        else:
+            rows.append(known.setdefault(each.name, _assumption(own, each, before, {})))
+    return rows
 
 
 def _assumption(
@@ -194,11 +206,11 @@ def _filter(filter_: Filter, own: Filter, definitions: Definitions, *, changed: 
     shape = None if law is None else _shape_of_error(law)
     typed += [] if shape is None else [shape["low"], shape["high"]]
     step = _step(max(typed) - min(typed) if len(typed) > 1 else 0.0, max(map(abs, typed), default=1.0) or 1.0)
-    unclear = filter_.evidence is not None and law is None and filter_.used
+    says = limits_text(filter_) if law is not None else f"keeps {_kept(filter_)}"
     return {
         "name": filter_.name,
         "cell": str(filter_.cell),
-        "keeps": "what agrees with its reading" if unclear else limits_text(filter_),
+        "says": says,
         "because": " · ".join(filter(None, (*_reach(filter_), filter_.because))),
         "step": step,
         "shape": shape,
@@ -207,6 +219,11 @@ def _filter(filter_: Filter, own: Filter, definitions: Definitions, *, changed: 
         "used": filter_.used,
         "limits": limits,
     }
+
+
+def _kept(filter_: Filter) -> str:
+    """Say what a filter keeps, or evidence whose law is not known."""
+    return limits_text(filter_) if filter_.evidence is None else "what agrees with its reading"
 
 
 def _limits(filter_: Filter, own: Filter, definitions: Definitions) -> Iterator[dict[str, Any]]:

@@ -256,6 +256,7 @@ class NumberBox {
     const text = this.input.value;
     if (this.goes && !text.trim()) {
       this.refuse("");
+      this.shown = this.input.dataset.shown = this.input.value = "";
       this.set(NONE, false);
       return;
     }

@@ -189,7 +189,7 @@ class FilterCard {
     }
     this.root.classList.toggle("changed", row.changed);
     this.back.hidden = !row.changed;
-    this.about.textContent = [row.used ? `keeps ${row.keeps}` : "not used", row.cell, row.because].filter(Boolean).join(" · ");
+    this.about.textContent = [row.used ? row.says : "not used", row.cell, row.because].filter(Boolean).join(" · ");
   }
 
   count(rejected, trials) {

@@ -50,7 +50,7 @@ function forecastElement({ name, units, marks }, number) {
 /** An answer that is yes or no, or a text: the share of each, and that of the state behind it. */
 function sharesElement({ name, shares }) {
   const compared = shares.some(([, , , before]) => before !== null);
-  const heads = ["", "", "Now", ...(compared ? ["Behind"] : [])];
+  const heads = ["", "", "Now", ...(compared ? ["Before"] : [])];
   const bar = (value) => make("meter", { min: 0, max: 100, value, "aria-hidden": "true" });
   return make("article", { class: "forecast shares" }, make("h3", {}, named(name)),
     make("table", { class: "beside" }, make("caption", { text: "Share of the accepted trials" }),

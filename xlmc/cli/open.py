@@ -29,14 +29,16 @@ _LAST_PORT = 65_535
 @click.argument("book", required=False, type=FilePath(), metavar="[BOOK|FOLDER]")
 @click.option("--no-browser", is_flag=True, help="Print the link, and open no browser.")
 @click.option("--port", type=WholeNumber(1, _LAST_PORT), help="Port of the window.  [default: a free one]")
-def open_window(book: Path | None, no_browser: bool, port: int | None) -> None:
+@click.option("--memory", type=WholeNumber(50, None), help="MB that runs of a workbook may take.  [default: 500]")
+def open_window(book: Path | None, no_browser: bool, port: int | None, memory: int | None) -> None:
     """Open the live window on BOOK, or on the workbooks of FOLDER: move ranges, and see the answers change."""
     import webbrowser
 
     from xlmc.outputs.live.server import LiveServer, bound_socket
+    from xlmc.outputs.live.session import MEMORY
 
     library = _library(book)
-    server = LiveServer(bound_socket(port or 0), library)
+    server = LiveServer(bound_socket(port or 0), library, memory=memory or MEMORY)
     link = server.link
     say(f"The window is at {link}")
     say("The link is good for one browser, for a minute. Ctrl-C ends the window; so does closing it for ten minutes.")

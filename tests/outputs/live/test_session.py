@@ -26,6 +26,7 @@ from openpyxl.worksheet.table import Table
 
 from xlmc.analysis.results.statements import statements
 from xlmc.errors import XlmcError
+from xlmc.montecarlo.columns.column_store import on_disk
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.outputs.live.adjustments import NONE, Adjustments, adjustments_of, in_words, scenario_of
@@ -429,10 +430,13 @@ def test_readings_limits_that_go_and_how_answers_are_stated_give_what_the_edited
     assert scenario_of(model.definitions, "kept", again) == scenario_of(model.definitions, "kept", session.adjustments)
     assert adjustments_of(model.definitions, scenario_of(model.definitions, "kept", again)) is not None
 
-    name, key, value = moved[-1][1:]
-    session.receive(change(name, key, value, of=moved[-1][0], held=True))
-    found = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
-    expected = simulate(copy, trials=moving, sampling="mc", evidence=found.settings.evidence)
+    session.receive(PageMessage("show", {"name": ""}))
+    if moved[0][0] != "forecast":
+        done(session, until(session, "moving"))
+    session.receive(PageMessage("show", {"name": "kept"}))
+    found = until(session, "moving" if moved[0][0] != "forecast" else "rest").run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    expected = simulate(copy, trials=found.trials, sampling="mc", evidence=found.settings.evidence)
+    assert found.trials in (moving, 4_000)
     assert found.trial_index.tobytes() == expected.trial_index.tobytes()
     session.receive(PageMessage("undo", {}))
     assert len(session.adjustments.as_json()["filters"]) <= 2
@@ -713,3 +717,28 @@ def test_another_reading_and_another_threshold_in_a_saved_workbook_are_said(read
         "witness: reads 62, normal (Std dev 9) → reads 61, normal (Std dev 9)",
         "speed: threshold 35 → 36",
     ]
+
+
+def test_what_takes_more_memory_than_allowed_lies_on_disk_and_is_the_same(case):
+    """Trials of runs at rest and of scenarios; draws are kept for the states that move now, and for no others."""
+    large, small = (Session(case[1], memory=memory) for memory in (500, 1))
+    for session in (large, small):
+        session.receive(change(FRICTION, "high", 0.9))
+        session.receive(PageMessage("keep", {"name": "dry"}))
+        settle(session)
+        session.receive(PageMessage("compare", {}))
+        settle(session)
+    for name, values in large.rest.forecasts.items():
+        assert not on_disk(values)
+        assert on_disk(small.rest.forecasts[name])
+        assert small.rest.forecasts[name].tobytes() == values.tobytes()
+    assert large._last["part scenarios"]["html"] == small._last["part scenarios"]["html"]
+
+    group = large.own.groups[0].names[0] if large.own.groups else None
+    held = next(each.name for each in large.own.live if each.base is not None and each.name not in (FRICTION, group))
+    for key, value in (("frozen", True), ("high", 0.95), ("frozen", False), ("high", 0.92)):
+        name = held if key == "frozen" else FRICTION
+        large.receive(change(name, key, value, held=key == "high"))
+        until(large, "moving").run(lambda: True, lambda share: None, lambda: 0.0)
+        runners = large._models._runners.values()
+        assert sum(bool(runner._runners) for runner in runners) == 1

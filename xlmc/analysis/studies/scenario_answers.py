@@ -241,14 +241,20 @@ def _answers(run: RunResult, jobs: int, tell: Callable[[str], None] | None) -> _
 
 
 def run_scenario(
-    model: CompiledModel, base: RunResult, *, jobs: int = 1, progress: OnProgress | None = None, pieces: int = BLOCK
+    model: CompiledModel,
+    base: RunResult,
+    *,
+    jobs: int = 1,
+    progress: OnProgress | None = None,
+    pieces: int = BLOCK,
+    in_memory: int | None = None,
 ) -> RunResult:
     """Run the model of a scenario as the workbook itself was run; see `run_model`.
 
     Raises:
         SimulationError: it cannot be run.
     """
-    options = replace(base.repeating, scenarios=False, jobs=jobs, keep_inputs=0)
+    options = replace(base.repeating, scenarios=False, jobs=jobs, keep_inputs=0, in_memory=in_memory)
     return run_model(model, options, progress=progress, pieces=pieces)
 
 

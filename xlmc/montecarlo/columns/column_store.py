@@ -207,6 +207,7 @@ class ColumnStore:
         types: column -> the type of its numbers.
         expected: column -> about how many numbers it will have; more is allowed.
         filled: whether all will have so many: then memory is taken for many columns at once.
+        in_memory: bytes of all columns together that stay in memory; None for `IN_MEMORY`.
     """
 
     def __init__(
@@ -215,7 +216,9 @@ class ColumnStore:
         expected: Mapping[Hashable, int] | None = None,
         *,
         filled: bool = False,
+        in_memory: int | None = None,
     ) -> None:
+        self._in_memory = IN_MEMORY if in_memory is None else in_memory
         self._types, self._filled = dict(types), filled
         self._files = {key: f"{number}.column" for number, key in enumerate(types)}
         self._expected = expected or {}
@@ -292,8 +295,8 @@ class ColumnStore:
     def _most(self) -> int:
         """Bytes that are gathered before they are written."""
         if self._folder is None:
-            return IN_MEMORY
-        return max(WRITTEN, min(IN_MEMORY // 2, _OF_A_COLUMN * len(self._types)))
+            return self._in_memory
+        return max(WRITTEN, min(self._in_memory // 2, _OF_A_COLUMN * len(self._types)))
 
     def _write(self) -> None:
         before, self._folder = self._folder, self._folder or Folder()

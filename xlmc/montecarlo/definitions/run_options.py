@@ -51,6 +51,8 @@ class RunOptions:
     Attributes:
         keep_prior: whether the draws of the first trials are kept before filtering, which results show and no run of
             the live window that is soon followed by another.
+        in_memory: bytes of the trials that are kept in memory, and not in a temporary folder; None for the usual half
+            gigabyte.
 
     Raises:
         SimulationError: the number of draws to keep is negative.
@@ -69,6 +71,7 @@ class RunOptions:
     keep_inputs: int | None = KEPT_INPUTS
     keep_prior: bool = True
     keep_interrupted: bool = False
+    in_memory: int | None = None
 
     def __post_init__(self) -> None:
         if self.keep_inputs is not None and self.keep_inputs < 0:

@@ -79,6 +79,7 @@ def disk_needed(
     block: int,
     most_inputs: int,
     runner: Callable[[], ModelRunner],
+    in_memory: int | None = None,
 ) -> DiskNeeded | None:
     """Predict what a run will write from its first trials' acceptance; None if it stays in memory, or nobody can say.
 
@@ -89,25 +90,27 @@ def disk_needed(
         block: trials in a block.
         most_inputs: accepted trials whose draws are kept.
         runner: makes what runs blocks.
+        in_memory: see `ColumnStore`.
 
     Raises:
         SimulationError: there is no folder to write to.
     """
     if stopping.asked and stopping.accepted is None:
         return None
+    most = column_store.IN_MEMORY if in_memory is None else in_memory
     rows = min(trials, trials if stopping.accepted is None else stopping.accepted)
     forecasts, inputs = len(model.forecasts), len(model.live)
 
     def stored(accepted: int) -> int:
         return accepted * (1 + forecasts) + min(accepted, most_inputs) * inputs
 
-    if NUMBER * stored(rows) <= column_store.IN_MEMORY:
+    if NUMBER * stored(rows) <= most:
         return None
     if model.filters:
         sampled, run = min(SAMPLED, trials), runner().run
         tasks = (Task(start, min(block, sampled - start), False, False) for start in range(0, sampled, block))
         rows = min(rows, round(sum(run(task).accepted.size for task in tasks) / sampled * trials))
-    if NUMBER * stored(rows) <= column_store.IN_MEMORY:
+    if NUMBER * stored(rows) <= most:
         return None
     return DiskNeeded(stored(rows), rows * (forecasts + 1), *free_disk())
 

@@ -38,7 +38,7 @@ __all__ = ["ReusingRunner"]
 Floats = NDArray[np.float64]
 
 _MOST_BYTES: Final = 1 << 27
-"""The most bytes of draws that are kept; if all draws of a run would take more, none is kept."""
+"""The most bytes of draws that are kept, unless asked otherwise."""
 
 _COMPARES: Final[Mapping[str, Callable[..., NDArray[np.bool_]]]] = {
     ">=": operator.ge,
@@ -59,9 +59,13 @@ class ReusingRunner:
         engine: that computes.
         seed: of all runs.
         trials: of the longest run.
+        most_bytes: of draws that are kept; if all draws of a run would take more, none is kept.
     """
 
-    def __init__(self, model: CompiledModel, engine: str, seed: int, trials: int) -> None:
+    def __init__(
+        self, model: CompiledModel, engine: str, seed: int, trials: int, most_bytes: int | None = None
+    ) -> None:
+        self._most_bytes = _MOST_BYTES if most_bytes is None else most_bytes
         self.engine, self._seed, self._trials = engine, seed, trials
         self._lowering = model.lowering
         self._questions = [_targets(each) for each in model.filters]
@@ -78,7 +82,7 @@ class ReusingRunner:
     def runner(self, model: CompiledModel, block: int) -> ModelRunner:
         """Return what runs blocks of so many trials of a model that it holds for, until it is asked for another one."""
         if block not in self._runners:
-            draws = _Draws(self._seed, block, self._trials)
+            draws = _Draws(self._seed, block, self._trials, self._most_bytes)
             self._runners[block] = draws, _MovedEvaluator(self._program.evaluator(block), draws)
         draws, evaluator = self._runners[block]
         draws.take(model)
@@ -86,6 +90,10 @@ class ReusingRunner:
         return ModelRunner(
             draws, model.filtered(evaluator), block, len(model.forecasts), model.fallible, model.categories
         )
+
+    def forget(self) -> None:
+        """Give the draws and quantities that are kept back."""
+        self._runners.clear()
 
     def base(self, model: CompiledModel) -> dict[str, float | None] | None:
         """Return the forecasts of a model that it holds for where each assumption has its base value, by name.
@@ -131,8 +139,8 @@ class _Draws:
 
     linear: Linear | None = None
 
-    def __init__(self, seed: int, block: int, trials: int) -> None:
-        self._seed, self._block, self._trials = seed, block, trials
+    def __init__(self, seed: int, block: int, trials: int, most_bytes: int) -> None:
+        self._seed, self._block, self._trials, self._most_bytes = seed, block, trials, most_bytes
         self._columns: dict[tuple[str, int], _Column] = {}
         self._versions = 0
         self._draws: tuple[Draw, ...] = ()
@@ -144,7 +152,7 @@ class _Draws:
     def take(self, model: CompiledModel) -> None:
         """Draw this model from now on."""
         self._draws = tuple(model.draws[name] for names in model.needed.stages for name in names)
-        large = 8 * len(self._draws) * self._trials > _MOST_BYTES
+        large = 8 * len(self._draws) * self._trials > self._most_bytes
         if large or model.groups or len(model.needed.stages) > 1:
             self._whole = model.sampler(self._seed, self._block)
         else:

@@ -111,7 +111,7 @@ def run_model(
     most_inputs = plan.trials if keep_inputs is None else keep_inputs
     if model.checks:
         most_inputs = max(most_inputs, LEAST_CHECKED)
-    gathered = _Gathered(model, block, piece, most_inputs, plan.trials)
+    gathered = _Gathered(model, block, piece, most_inputs, plan.trials, options.in_memory)
 
     def runner() -> ModelRunner:
         if own_runner is not None:
@@ -125,7 +125,7 @@ def run_model(
             model, model.program(settings.engine), settings, plan, computed, tasks, gathered.block_memory
         )
 
-    needed = disk_needed(model, settings.stopping, plan.trials, piece, most_inputs, runner)
+    needed = disk_needed(model, settings.stopping, plan.trials, piece, most_inputs, runner, options.in_memory)
     if needed is not None:
         needed.check()
         if tell is not None:
@@ -163,7 +163,7 @@ def run_model(
             return gathered.simulation(settings, plan, stopped)
     if isinstance(found, Stopped):
         return gathered.simulation(settings, plan, found)
-    return _with_search(gathered.simulation(settings, plan, watch.goal_reached), found, most_inputs)
+    return _with_search(gathered.simulation(settings, plan, watch.goal_reached), found, most_inputs, options.in_memory)
 
 
 def _followed(model: CompiledModel, follow: Collection[str] | None) -> Collection[str]:
@@ -216,13 +216,13 @@ def _searched(
     return found if found.account is not None else Stopped("search", found.failure, watch.goal_reached.goal)
 
 
-def _with_search(plain: RunResult, found: Search, most_inputs: int) -> RunResult:
+def _with_search(plain: RunResult, found: Search, most_inputs: int, in_memory: int | None) -> RunResult:
     """Return the run with the trials that were found, instead of those few that plain trials had left."""
     from xlmc.montecarlo.rare.search import accepted_blocks
 
     assert found.account is not None
     model, block = plain.model, plain.model.program("numpy").largest_block
-    gathered = _Gathered(model, block, block, most_inputs, len(found.uniforms))
+    gathered = _Gathered(model, block, block, most_inputs, len(found.uniforms), in_memory)
     for each in accepted_blocks(model, found.uniforms, block, lambda: gathered.wants_inputs):
         gathered.add(each)
     drawn = gathered.simulation(plain.settings, plain.plan, plain.stopped)
@@ -241,7 +241,9 @@ def _with_search(plain: RunResult, found: Search, most_inputs: int) -> RunResult
 class _Gathered:
     """The blocks so far: the counts of all trials, and the columns of the accepted ones."""
 
-    def __init__(self, model: CompiledModel, block: int, piece: int, keep_inputs: int, trials: int) -> None:
+    def __init__(
+        self, model: CompiledModel, block: int, piece: int, keep_inputs: int, trials: int, in_memory: int | None
+    ) -> None:
         self._model, self._block, self._piece, self._keep_inputs = model, block, piece, keep_inputs
         real, whole = np.dtype(np.float64), np.dtype(np.int64)
         self._inputs = {name: ("input", name) for name in model.draws}
@@ -252,7 +254,7 @@ class _Gathered:
         expected |= dict.fromkeys(self._inputs.values(), min(keep_inputs + piece, trials))
         expected |= dict.fromkeys(self._prior.values(), min(PRIOR_TRIALS, trials))
         types: dict[Hashable, np.dtype[Any]] = {("trial", 0): whole, **dict.fromkeys(columns, real)}
-        self._keeper = ColumnStore(types, expected, filled=not model.filters)
+        self._keeper = ColumnStore(types, expected, filled=not model.filters, in_memory=in_memory)
         self._prior_trials, self._prior_is_inputs = 0, True
         self._tally = FilterTally.empty(len(model.filters))
         self._invalid: Counter[str] = Counter()

@@ -28,13 +28,17 @@ class Comparison:
         own: the workbook's model.
         stored: scenarios of the window, by name; they take the place of the workbook's of the same name.
         piece: trials after which it is looked whether the table is still wanted.
+        in_memory: bytes of the trials of all runs together that stay in memory.
     """
 
-    def __init__(self, own: CompiledModel, stored: Mapping[str, Adjustments], piece: int) -> None:
+    def __init__(
+        self, own: CompiledModel, stored: Mapping[str, Adjustments], piece: int, in_memory: int | None = None
+    ) -> None:
         fitting = {name: each.only(own.definitions) for name, each in stored.items()}
         mine = [scenario_of(own.definitions, name, each) for name, each in fitting.items()]
         self._own, self._piece = own, piece
         self._scenarios = [*(each for each in own.definitions.scenarios if each.name not in stored), *mine]
+        self._of_a_run = None if in_memory is None else in_memory // (len(self._scenarios) + 1)
         self._base: RunResult | None = None
         self._runs: dict[str, RunResult | str] = {}
 
@@ -56,7 +60,7 @@ class Comparison:
             report_share((done + progress.share) / count)
 
         if self._base is None:
-            options = RunOptions(scenarios=True)
+            options = RunOptions(scenarios=True, in_memory=self._of_a_run)
             self._base = run_model(self._own, options, progress=watch, pieces=self._piece)
         for scenario in self._scenarios:
             go_on()
@@ -74,6 +78,6 @@ class Comparison:
         """The run of a scenario; or why it is not possible."""
         try:
             model = model_of(self._own, scenario)
-            return run_scenario(model, base, progress=watch, pieces=self._piece)
+            return run_scenario(model, base, progress=watch, pieces=self._piece, in_memory=self._of_a_run)
         except XlmcError as error:
             return str(error)

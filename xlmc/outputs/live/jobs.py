@@ -167,6 +167,7 @@ class StateRun:
         method: how evidence is used while states move.
         trials: of a run that moves.
         piece: trials after which it is looked whether the run is still wanted.
+        in_memory: bytes of its trials that stay in memory.
         watched: whether that is looked at all; a run that is quick ends sooner than the next move comes.
         draws: whether something that is shown of a run that moves needs its draws.
     """
@@ -181,6 +182,7 @@ class StateRun:
     method: str | None
     trials: int
     piece: int
+    in_memory: int
     watched: bool
     draws: bool
 
@@ -201,7 +203,8 @@ class StateRun:
             if resting:
                 model = self.models.at_rest(self.adjustments)
                 begun = clock()
-                found = run_model(model, RunOptions(), progress=watched, pieces=self.piece, follow=())
+                options = RunOptions(in_memory=self.in_memory)
+                found = run_model(model, options, progress=watched, pieces=self.piece, follow=())
                 base = bases_of(found)
             else:
                 moving = self.models.moving(self.adjustments)
@@ -217,6 +220,7 @@ class StateRun:
                     evidence=method,
                     keep_inputs=KEPT_INPUTS if self.draws else 0,
                     keep_prior=False,
+                    in_memory=self.in_memory,
                 )
                 found = run_model(
                     model,

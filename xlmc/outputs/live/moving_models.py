@@ -70,10 +70,11 @@ class KnownModels:
     Args:
         own: the workbook's model.
         trials: of the longest run of a state that moves.
+        most_bytes: of draws that are kept.
     """
 
-    def __init__(self, own: CompiledModel, trials: int) -> None:
-        self.own, self._trials = own, trials
+    def __init__(self, own: CompiledModel, trials: int, most_bytes: int | None = None) -> None:
+        self.own, self._trials, self._most_bytes = own, trials, most_bytes
         self._holding: dict[_State, CompiledModel] = {(): own}
         self._runners: dict[_State, ReusingRunner] = {}
         self._last: tuple[CompiledModel, Adjustments, CompiledModel] | None = None
@@ -133,10 +134,13 @@ class KnownModels:
     def _runner_of(self, state: _State, model: CompiledModel) -> ReusingRunner:
         if state not in self._runners or not self._runners[state].holds_for(model):
             self._runners[state] = self._new_runner(model)
+        for other, runner in self._runners.items():
+            if other != state:
+                runner.forget()
         return self._runners[state]
 
     def _new_runner(self, model: CompiledModel) -> ReusingRunner:
-        return ReusingRunner(model, _engine(model), model.definitions.settings.seed, self._trials)
+        return ReusingRunner(model, _engine(model), model.definitions.settings.seed, self._trials, self._most_bytes)
 
 
 def _engine(model: CompiledModel) -> str:

@@ -21,7 +21,7 @@ from xlmc.outputs.live.hand_over import KINDS, edited_state, page_of, save_resul
 from xlmc.outputs.live.jobs import Job, Outcome, SupersededError, View
 from xlmc.outputs.live.library import Library
 from xlmc.outputs.live.protocol import Message, PageMessage, written
-from xlmc.outputs.live.session import Session
+from xlmc.outputs.live.session import MEMORY, Session
 from xlmc.outputs.live.study_run import OF_THE_FILE, StudyRun
 from xlmc.outputs.live.what_changed import what_changed
 
@@ -93,10 +93,11 @@ class OpenBook:
         path: of the workbook.
         library: of the workbooks that may be opened beside it.
         offer: takes a page of results, and gives the ticket for it.
+        memory: see `Session`.
     """
 
-    def __init__(self, path: Path, library: Library, offer: Callable[[str], str]) -> None:
-        self.path = path
+    def __init__(self, path: Path, library: Library, offer: Callable[[str], str], memory: int = MEMORY) -> None:
+        self.path, self._memory = path, memory
         self.session: Session | None = None
         self._library, self._keeper, self._windows = library, library.keeper, set[Window]()
         self._study: StudyRun | None = None
@@ -273,7 +274,7 @@ class OpenBook:
         while (model := await self._read()) is None:
             await self._changed()
         stored, unkept = self._stored_before()
-        self.session = Session(model, stored, unkept)
+        self.session = Session(model, stored, unkept, self._memory)
         self._send(self.session.greeting())
         while True:
             job = self.session.job()

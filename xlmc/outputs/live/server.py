@@ -31,6 +31,7 @@ from xlmc.outputs.live.guard import HEADERS, MOST_UPLOADED, PRINTED, Guard, proo
 from xlmc.outputs.live.library import Library
 from xlmc.outputs.live.open_book import OpenBook
 from xlmc.outputs.live.protocol import MOST_BYTES, Message, PageMessage, ProtocolError, read_message, written
+from xlmc.outputs.live.session import MEMORY
 from xlmc.outputs.live.timed_requests import TimedRequests
 
 __all__ = ["IDLE_SECONDS", "LiveServer", "bound_socket"]
@@ -118,6 +119,7 @@ class LiveServer:
         library: which workbooks may be opened.
         idle: seconds after the last window was closed, and after the start, until it ends.
         clock: gives these seconds.
+        memory: see `Session`.
     """
 
     def __init__(
@@ -127,8 +129,9 @@ class LiveServer:
         *,
         idle: float = IDLE_SECONDS,
         clock: Callable[[], float] = time.monotonic,
+        memory: int = MEMORY,
     ) -> None:
-        self._socket, self._library, self._idle, self._clock = sock, library, idle, clock
+        self._socket, self._library, self._idle, self._clock, self._memory = sock, library, idle, clock, memory
         self.port: int = sock.getsockname()[1]
         self.guard = Guard(self.port, clock)
         self._open_books: dict[str, OpenBook] = {}
@@ -325,7 +328,7 @@ class LiveServer:
 
     def _open_book(self, key: str, path: Path) -> OpenBook:
         if key not in self._open_books:
-            self._open_books[key] = OpenBook(path, self._library, self.guard.new_page)
+            self._open_books[key] = OpenBook(path, self._library, self.guard.new_page, self._memory)
             self._library.opened(path)
             self._open_books[key].start()
         return self._open_books[key]

@@ -64,10 +64,18 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["Replies", "Session"]
+__all__ = ["MEMORY", "Replies", "Session"]
 
 _SKETCH: Final = 0.05
 """Seconds that what a tab shows may take while states move; what takes longer waits until they are at rest."""
+
+MEMORY: Final = 500
+"""Megabytes of runs and draws: more of a run lies in a temporary folder."""
+
+_OF_DRAWS, _OF_A_RUN = 1 / 4, 1 / 8
+"""The shares of that for draws that are kept while states move, and for each of the runs that there are at a time: at
+rest, behind it, the next one, of scenarios, and that of a moment ago.
+"""
 
 OPENS_WITH: Final = 3
 """Forecasts whose charts are open at first."""
@@ -88,12 +96,17 @@ class Session:
         model: the workbook's.
         stored: scenarios by name.
         offered: a state that was not kept under a name when the window was last closed.
+        memory: megabytes that its runs and draws may take.
     """
 
     def __init__(
-        self, model: CompiledModel, stored: Mapping[str, Adjustments] | None = None, offered: Adjustments | None = None
+        self,
+        model: CompiledModel,
+        stored: Mapping[str, Adjustments] | None = None,
+        offered: Adjustments | None = None,
+        memory: int = MEMORY,
     ) -> None:
-        self.own = model
+        self.own, self._memory = model, memory
         self.adjustments = Adjustments()
         self.stored: dict[str, Adjustments] = dict(stored or {})
         self.offered = offered or Adjustments()
@@ -103,13 +116,13 @@ class Session:
         self.behind: RunResult | None = None
         self.behind_is = "the workbook as it was opened"
         self._behind_of: tuple[int, Adjustments] | None = None
-        self._rest_drawn: tuple[int, Adjustments] | None = None
+        self._answered: tuple[int, Adjustments] | None = None
         self.view = View(tuple(each.name for each in model.forecasts[:OPENS_WITH]))
         self._pin_next = True
         self._dragged = False
         self._seq = 0
         self._done: dict[str | Tab, object] = {}
-        self._models = KnownModels(model, MOVING_TRIALS)
+        self._models = self._new_models()
         self._problem: str | None = None
         self._last: dict[str, Message] = {}
         self._pace = Pace(len(model.needed.graph.formulas))
@@ -130,6 +143,14 @@ class Session:
     def greeting(self) -> list[Message]:
         """All that a window needs that was just opened, or that comes back."""
         return [book_message(self.own), self._state(), *self._last.values(), *self._trouble()]
+
+    def _new_models(self) -> KnownModels:
+        return KnownModels(self.own, MOVING_TRIALS, int(_OF_DRAWS * (self._memory << 20)))
+
+    @property
+    def _of_a_run(self) -> int:
+        """Bytes of the trials of a run that stay in memory."""
+        return int(_OF_A_RUN * (self._memory << 20))
 
     def _state(self) -> Message:
         return {
@@ -200,7 +221,7 @@ class Session:
                 self._show(sent["name"])
             case "compare":
                 self._compare += 1
-                self._comparison = Comparison(self.own, self.stored, self._pace.piece(resting=True))
+                self._comparison = Comparison(self.own, self.stored, self._pace.piece(resting=True), self._of_a_run)
                 return False
             case "variants":
                 self.stored |= usual_variants(self.own.definitions)
@@ -304,7 +325,7 @@ class Session:
         if before != self.adjustments and before not in self.stored.values() and not self.offered:
             self.offered = before  # what no longer fits is not lost: it may fit again
         self.version += 1
-        self._models = KnownModels(model, MOVING_TRIALS)
+        self._models = self._new_models()
         self._pace = self._pace.of_saved(len(model.needed.graph.formulas))
         self._moving, self._sketch_seconds = None, 0.0
         self._problem, self._done = None, {}
@@ -395,7 +416,7 @@ class Session:
         return self.version, self.view.forecasts, self.view.fits, id(self._compared)
 
     def _wants(self, stage: str) -> bool:
-        if self._done.get(stage) == self.version or (stage != "rest" and self._drawn == self._rest_drawn):
+        if self._done.get(stage) == self.version or (stage != "rest" and self._drawn == self._answered):
             return False
         if stage == "sketch":
             shown = any(tab.key == SKETCHED for tab in self.view.tabs)
@@ -438,6 +459,7 @@ class Session:
             method="rejection" if self.rest is None else self.rest.settings.evidence,
             trials=pace.quick_trials if stage == "quick" else MOVING_TRIALS,
             piece=pace.piece(resting=resting),
+            in_memory=self._of_a_run,
             watched=resting or (pace.is_slow and stage == "moving"),
             draws=self._shows_draws(stage),
         ).run
@@ -466,9 +488,11 @@ class Session:
         if outcome.seconds is not None:
             self._pace.learn(outcome.seconds, resting=job.stage == "rest", quick=job.stage == "quick")
         found = list(outcome.messages)
+        if job.stage != "quick" and job.version == self.version:
+            self._answered = self._drawn
         self._moving = outcome.simulation if job.stage == "moving" and job.version == self.version else None
         if job.stage == "rest" and job.version == self.version:
-            self.rest, self._sketch_seconds, self._rest_drawn = outcome.simulation, 0.0, self._drawn
+            self.rest, self._sketch_seconds = outcome.simulation, 0.0
             if self._pin_next and not self.adjustments and outcome.simulation is not None:
                 self.behind, self._behind_of, self._pin_next = outcome.simulation, self._now, False
         self._remember(found)

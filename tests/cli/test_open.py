@@ -17,7 +17,7 @@ def test_it_prints_a_link_serves_and_ends_with_ctrl_c(started, tmp_path, monkeyp
     book = shutil.copy(EXAMPLES["collinear-head-on"], tmp_path / "case.xlsx")
     monkeypatch.setenv("XDG_STATE_HOME", str(tmp_path / "state"))
     monkeypatch.setenv("HOME", str(tmp_path))
-    running = started("open", book, "--no-browser")
+    running = started("open", book, "--no-browser", "--memory", "2,000")
     link = re.search(r"http://127\.0\.0\.1:\d+/book/\w+#\w+\.[\w-]+", running.out.readline())[0]
     end = time.monotonic() + 120
     while True:
@@ -69,3 +69,4 @@ def test_what_cannot_be_opened_is_told(xlmc, tmp_path):
     assert outcome.code == 2
     assert "nothing.xlsx: there is no such file" in outcome.err
     assert xlmc("open", "--port", "0").code == 2
+    assert xlmc("open", "--memory", "20").code == 2

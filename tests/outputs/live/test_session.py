@@ -434,7 +434,11 @@ def test_readings_limits_that_go_and_how_answers_are_stated_give_what_the_edited
     if moved[0][0] != "forecast":
         done(session, until(session, "moving"))
     session.receive(PageMessage("show", {"name": "kept"}))
-    found = until(session, "moving" if moved[0][0] != "forecast" else "rest").run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    found = (
+        until(session, "moving" if moved[0][0] != "forecast" else "rest")
+        .run(lambda: True, lambda share: None, lambda: 0.0)
+        .simulation
+    )
     expected = simulate(copy, trials=found.trials, sampling="mc", evidence=found.settings.evidence)
     assert found.trials in (moving, 4_000)
     assert found.trial_index.tobytes() == expected.trial_index.tobytes()

@@ -97,7 +97,7 @@ class Adjustments:
         return bool(self.assumptions or self.filters or self.forecasts)
 
     def having(self, of: str, name: str, key: str, value: Amount | None) -> Adjustments:
-        """The adjustments with one value set; None sets it back to the workbook's."""
+        """Return the adjustments with one value set; None sets it back to the workbook's."""
         before = self._part(of)
         own = {k: v for k, v in before.get(name, {}).items() if k != key}
         if value is not None:
@@ -105,12 +105,12 @@ class Adjustments:
         return self._with(of, name, own)
 
     def without(self, of: str, name: str) -> Adjustments:
-        """The adjustments with one assumption or filter set back to the workbook's."""
+        """Return the adjustments with one row set back to the workbook's."""
         return self._with(of, name, {})
 
     def only(self, definitions: Definitions) -> Adjustments:
-        """What is left for a workbook that was changed meanwhile: of what it no longer has, and of values that it now
-        has itself, nothing.
+        """Return what still differs from a workbook that was changed meanwhile: nothing of rows that it no longer has,
+        and of values that it now has itself.
         """
         found = Adjustments()
         for of, name, key, value in self._each():
@@ -120,7 +120,7 @@ class Adjustments:
         return found
 
     def frozen_part(self, definitions: Definitions) -> Adjustments:
-        """The part of it that says what is held and where, and which rows are used; nothing that has no effect."""
+        """Return the part that says what is held and where, and which rows are used; nothing that has no effect."""
         found = Adjustments()
         for name, (_, used) in definitions.switches.items():
             if self.filters.get(name, {}).get("used", used) != used:
@@ -135,7 +135,7 @@ class Adjustments:
         return found
 
     def numbers(self, definitions: Definitions) -> Adjustments:
-        """The other part: numbers of what is drawn, of filters that are used, and of forecasts."""
+        """Return the other part: numbers of what is drawn, of filters that are used, and of forecasts."""
         found = Adjustments(forecasts=self.forecasts)
         for name, given in self.filters.items():
             if given.get("used", definitions.is_used(name)):
@@ -148,12 +148,12 @@ class Adjustments:
         return found
 
     def as_json(self) -> dict[str, Any]:
-        """Plain values, which `of_json` reads back."""
+        """Return plain values, which `of_json` reads back."""
         return {part: {name: dict(each) for name, each in self._part(of).items()} for of, part in PARTS.items()}
 
     @classmethod
     def of_json(cls, found: Mapping[str, Any]) -> Adjustments:
-        """See `as_json`.
+        """Read what `as_json` returned.
 
         Raises:
             ValueError, TypeError, AttributeError, KeyError, OverflowError: it is something else.
@@ -204,12 +204,12 @@ def is_own(value: Amount, own: Parameter | bool | None) -> bool:
 
 
 def assumption_numbers(assumption: Assumption) -> dict[str, tuple[str, Parameter]]:
-    """Key of each parameter and cutoff that is given -> its heading and its value."""
+    """Return key of each parameter and cutoff that is given -> its heading and its value."""
     return {key: (heading, assumption.given[key]) for key, heading in assumption.headings.items()}
 
 
 def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parameter | bool | None]:
-    """What can be set of an assumption or a filter, as the workbook has it; of a name that it has not, nothing."""
+    """Return what can be set of a row, as the workbook has it; nothing of a name that it does not have."""
     if of == "filter":
         rows = (*definitions.filters, *definitions.forecast_filters, *definitions.unused)
         filter_ = next((each for each in rows if each.name == name), None)
@@ -228,7 +228,7 @@ def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parame
 
 
 def movable_limits(filter_: Filter) -> dict[str, Parameter]:
-    """The limits of a filter; none of evidence, whose reading and error say what it keeps."""
+    """Return the limits of a filter; none of evidence, whose reading and error say what it keeps."""
     limits = {} if filter_.evidence is not None else {key: getattr(filter_, key) for key in LIMITS}
     return {key: value for key, value in limits.items() if value is not None}
 
@@ -245,7 +245,7 @@ def _percent(forecast: Forecast) -> float:
 
 
 def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Change]:
-    """What is to be changed in the workbook. What has no effect, a number of what is frozen, is left out."""
+    """Return what is to be changed in the workbook, without what has no effect, as a number of what is frozen."""
     found: list[Change] = []
     for assumption in definitions.assumptions:
         found += _of_assumption(assumption, dict(adjustments.assumptions.get(assumption.name, {})))
@@ -264,7 +264,7 @@ def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Chang
 
 
 def _numbers(given: Mapping[str, Amount]) -> dict[str, float | None]:
-    """Key -> number; None for what is taken away."""
+    """Return key -> number; None for what is taken away."""
     return {key: None if value == NONE else float(value) for key, value in given.items()}
 
 
@@ -285,12 +285,12 @@ def _of_assumption(assumption: Assumption, given: dict[str, Amount]) -> Iterator
 
 
 def scenario_of(definitions: Definitions, name: str, adjustments: Adjustments) -> Scenario:
-    """A state of the window as a scenario, such as the workbook's table `xlmc_scenarios` holds."""
+    """Return a state of the window as a scenario, such as the workbook's table `xlmc_scenarios` holds."""
     return Scenario(name, tuple(changes_of(definitions, adjustments)))
 
 
 def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments | None:
-    """A scenario of the workbook as a state of the window; None where it changes what the window has no handle for."""
+    """Return a scenario of the workbook as a state of the window; None if the window has no handle for a change."""
     assumptions = {each.name: each for each in definitions.assumptions}
     found = Adjustments()
     for change in scenario.changes:
@@ -309,7 +309,7 @@ def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments 
 
 
 def _row_of(change: Change) -> tuple[str, str]:
-    """What a change with values is of, and its name."""
+    """Return the kind and the name of the row that a change with values is of."""
     match change:
         case Limits(name) | Switched(name) | Measured(name):
             return "filter", name
@@ -321,7 +321,7 @@ def _row_of(change: Change) -> tuple[str, str]:
 
 
 def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, Amount] | None:
-    """Key -> value of one change; None where it is none of these."""
+    """Return key -> value of one change; None if it is another kind of change."""
     match change:
         case Frozen(_, value):
             return {"frozen": True} if value is None else {"frozen": True, "base": value}
@@ -340,7 +340,7 @@ def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, 
 
 
 def adjusted_definitions(definitions: Definitions, adjustments: Adjustments) -> Definitions:
-    """The definitions with these values, whatever they are."""
+    """Return the definitions with these values, whatever they are."""
     return replace(
         definitions,
         assumptions=tuple(_assumption(each, adjustments.assumptions) for each in definitions.assumptions),
@@ -386,7 +386,7 @@ def _forecast(forecast: Forecast, changed: Changed) -> Forecast:
 
 
 def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
-    """What differs, a phrase each: `friction: High 0.75 → 0.85`; also of what the workbook no longer has."""
+    """Say what differs, a phrase each: `friction: High 0.75 → 0.85`; also of what the workbook no longer has."""
     found = []
     for of, name, key, value in adjustments._each():
         own = own_values(definitions, of, name)
@@ -402,7 +402,7 @@ def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
 def changed_text(
     definitions: Definitions, of: str, name: str, key: str, before: Parameter | bool | None, after: Amount
 ) -> str:
-    """`High 0.75 → 0.85`, `frozen`, `at least 0 → 0.1`."""
+    """Write a change: `High 0.75 → 0.85`, `frozen`, `at least 0 → 0.1`."""
     if key == "frozen":
         return "frozen" if after else "not frozen"
     if key == "used":
@@ -422,7 +422,7 @@ def changed_text(
 
 
 def _amount_text(key: str, value: Parameter | Amount) -> str:
-    """`0.75`, `51 %`; `none` for what is taken away; `on` and `off` of a switch."""
+    """Write a value: `0.75`, `51 %`; `none` for what is taken away; `on` and `off` of a switch."""
     if isinstance(value, bool):
         return ("off", "on")[value]
     if value == NONE:
@@ -431,7 +431,7 @@ def _amount_text(key: str, value: Parameter | Amount) -> str:
 
 
 def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
-    """What people try to see how firm an answer is: all ranges wider and narrower, each limit halved and doubled.
+    """Return variants that show how firm an answer is: all ranges wider and narrower, each limit halved and doubled.
 
     Ranges are those of the assumptions with numbers `low` and `high`; a limit of 0 stays.
     """
@@ -455,7 +455,7 @@ def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
 
 
 def _ranges(definitions: Definitions) -> Iterator[tuple[str, float, float]]:
-    """Name, low and high of the drawn assumptions that are given by these two numbers."""
+    """Return name, low and high of the drawn assumptions that are given by these two numbers."""
     for each in definitions.assumptions:
         low, high = each.parameters.get("low"), each.parameters.get("high")
         if not each.frozen and len(each.parameters) == 2 and isinstance(low, float) and isinstance(high, float):

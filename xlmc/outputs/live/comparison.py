@@ -1,4 +1,4 @@
-"""All scenarios of a window in one table, whose runs are kept while it is made: it may be given up and gone on with."""
+"""All scenarios of a window in one table, whose runs are kept while it is made: it can be given up and resumed."""
 
 from __future__ import annotations
 
@@ -75,7 +75,7 @@ class Comparison:
         return scenarios_html(found, {name: why for name, why in runs.items() if isinstance(why, str)})
 
     def _run(self, scenario: Scenario, base: RunResult, watch: Callable[[Progress], None]) -> RunResult | str:
-        """The run of a scenario; or why it is not possible."""
+        """Run a scenario; returns why it is not possible where it is not."""
         try:
             model = model_of(self._own, scenario)
             return run_scenario(model, base, progress=watch, pieces=self._piece, in_memory=self._of_a_run)

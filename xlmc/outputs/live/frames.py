@@ -79,7 +79,7 @@ def frame_of(
     moving: bool,
     fits: bool,
 ) -> Message:
-    """The charts of some forecasts.
+    """Return the charts of some forecasts.
 
     Args:
         simulation: the run.
@@ -108,15 +108,15 @@ def frame_of(
 
 
 def bases_of(simulation: RunResult) -> Bases | None:
-    """The base case of a run."""
+    """Return the base case of a run."""
     found = base_case(simulation)
     return None if found is None else found.forecasts
 
 
 def _figure(result: ForecastResult, base: float | None) -> Figure | None:
-    """A forecast to draw, with no other statistics than the window shows.
+    """Return a forecast to draw, with no other statistics than the window shows.
 
-    None where it has no number, or where its weighted trials carry too little for a range.
+    None if it has no number, or if its weighted trials carry too little for a range.
     """
     definition, (low, high) = result.definition, result.central()
     if not result.sample.n:
@@ -145,7 +145,7 @@ def _figure(result: ForecastResult, base: float | None) -> Figure | None:
 
 
 def _shares(figure: Figure, behind: ForecastResult | None) -> Message:
-    """The share of each text, or of yes and no: name, share in words, in percent, and of the state behind."""
+    """Return the share of each text, or of yes and no: name, share in words, in percent, and of the state behind."""
     now = shares_of(figure.answer)
     before: Mapping[str, Estimate] = {}
     if behind is not None and behind.sample.n:
@@ -168,7 +168,7 @@ def _shares(figure: Figure, behind: ForecastResult | None) -> Message:
 
 
 def _beside(figure: Figure, now: ForecastResult, behind: RunResult | None) -> dict[str, Any]:
-    """The numbers beside a chart, and the state behind it."""
+    """Return the numbers beside a chart, and the state behind it."""
     before = None if behind is None else behind.results.get(figure.answer.name)
     if before is None or not before.sample.n or before.kind is not now.kind:
         beside = [[label, *_texts(label, each, None, now.form)] for label, each in _numbers(now)]
@@ -182,7 +182,7 @@ def _beside(figure: Figure, now: ForecastResult, behind: RunResult | None) -> di
 
 
 def _numbers(result: ForecastResult) -> list[tuple[str, Estimate]]:
-    """The numbers that a reader of the chart asks for first."""
+    """Return the numbers that a reader of the chart asks for first."""
     if result not in _KNOWN:
         sample = result.sample
         found = percentiles(sample, _PERCENTS)
@@ -197,7 +197,7 @@ def _numbers(result: ForecastResult) -> list[tuple[str, Estimate]]:
 
 
 def _texts(label: str, now: Estimate, before: Estimate | None, form: Form) -> tuple[str, str, str]:
-    """The number, the one before to the same decimal, and by how much it has changed."""
+    """Write the number, the one before to the same decimal, and by how much it has changed."""
     written = form.spread if label == _SPREAD else form.estimate
     if before is None:
         return written(now), "", ""
@@ -215,7 +215,7 @@ def _texts(label: str, now: Estimate, before: Estimate | None, form: Form) -> tu
 
 
 def _moved(figure: Figure, now: ForecastResult, before: ForecastResult) -> str:
-    """`Nissan impact speed: mean 4.72 → 5.31 mph`."""
+    """Say how the mean moved: `Nissan impact speed: mean 4.72 → 5.31 mph`."""
     units = f" {figure.answer.units}" if figure.answer.units else ""
     old, new = _texts("Mean", before.mean, now.mean, now.form)[:2]
     old, new = (_without_error(text) for text in (old, new))
@@ -223,7 +223,7 @@ def _moved(figure: Figure, now: ForecastResult, before: ForecastResult) -> str:
 
 
 def _without_error(text: str) -> str:
-    """`$11.8 ± 0.2` without the error, but with what stands after it: `32.0 ± 0.3 %` is `32.0 %`."""
+    """Take the error out of `$11.8 ± 0.2`, but not what stands after it: `32.0 ± 0.3 %` is `32.0 %`."""
     value, _, error = text.partition(" ± ")
     after = error.partition(" ")[2]
     return f"{value} {after}" if after and not value.endswith(after) else value
@@ -236,7 +236,7 @@ _MOST_TEXTS: Final = 30
 
 
 def _bars_behind(figure: Figure, sample: Sample) -> dict[str, Any]:
-    """The bars of the state behind, as wide as those before it, so that the two compare."""
+    """Return the bars of the state behind, as wide as those before it, so that the two compare."""
     x, width = sample.even, figure.bins.width
     first, last = x[round(0.001 * (x.size - 1))], x[round(0.999 * (x.size - 1))]
     start, stop = math.floor(first / width), math.floor(last / width) + 1
@@ -255,7 +255,7 @@ def _bars_behind(figure: Figure, sample: Sample) -> dict[str, Any]:
 
 
 def rest_of(simulation: RunResult) -> Message:
-    """What is said of a run that is done: the answer in sentences, warnings, checks, what the filters rejected."""
+    """Return what is said of a finished run: the answer in sentences, warnings, checks, what the filters rejected."""
     counts = zip(simulation.model.filters, simulation.tally.rejected, simulation.tally.only, strict=True)
     return {
         "sentences": [each.text for each in statements(simulation)],
@@ -273,7 +273,7 @@ def rest_of(simulation: RunResult) -> Message:
 
 
 def matters_html(simulation: RunResult, names: Collection[str], report_share: Callable[[float], None]) -> str:
-    """Which assumptions some answers depend on, and what another limit of a filter would change.
+    """Write which assumptions some answers depend on, and what another limit of a filter would change.
 
     Args:
         simulation: the run.
@@ -293,7 +293,7 @@ def matters_html(simulation: RunResult, names: Collection[str], report_share: Ca
 
 
 def _of_chosen(simulation: RunResult, names: Sequence[str]) -> Html:
-    """Of how many answers a tab is, where it is not of all."""
+    """Say of how many answers a tab is, if it is not of all."""
     count, every = len(names), len(simulation.results)
     if count == every:
         return EMPTY
@@ -302,7 +302,7 @@ def _of_chosen(simulation: RunResult, names: Sequence[str]) -> Html:
 
 
 def tables_html(simulation: RunResult, names: Collection[str], report_share: Callable[[float], None]) -> str:
-    """The tables that the page of results has; of single forecasts, those of some. See `matters_html`."""
+    """Write the tables that the page of results has; of single forecasts, those of some. See `matters_html`."""
     chosen = [name for name in simulation.results if name in names]
     makers: tuple[Callable[[], Html], ...] = (
         lambda: statistics(simulation, chosen),
@@ -318,7 +318,7 @@ def tables_html(simulation: RunResult, names: Collection[str], report_share: Cal
 
 
 def scenarios_html(found: Sequence[ScenarioAnswers], impossible: Mapping[str, str]) -> str:
-    """The answers of scenarios beside those of the workbook itself, in tables.
+    """Write the answers of scenarios beside those of the workbook itself, in tables.
 
     Args:
         found: the workbook itself, then scenarios.
@@ -330,7 +330,7 @@ def scenarios_html(found: Sequence[ScenarioAnswers], impossible: Mapping[str, st
 
 
 def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | None:
-    """Two quantities in the same accepted trials, for a scatter and an overlay; None where either is unknown.
+    """Return two quantities in the same accepted trials, for a scatter and an overlay; None if either is unknown.
 
     Args:
         simulation: the run.
@@ -361,7 +361,7 @@ def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | 
 
 
 def _together(simulation: RunResult, names: tuple[str, str]) -> list[dict[str, Any]]:
-    """Both as charts to be laid over each other; none where they are not two forecasts in one unit."""
+    """Return both as charts to be laid over each other; none if they are not two forecasts in one unit."""
     figures = figures_of(simulation, names) if names[0] != names[1] else []
     if len(figures) < 2 or len({figure.answer.units for figure in figures}) > 1:
         return []
@@ -371,7 +371,7 @@ def _together(simulation: RunResult, names: tuple[str, str]) -> list[dict[str, A
 
 
 def _form(simulation: RunResult, name: str) -> Form:
-    """How the numbers of a forecast are written; of an assumption nothing is known."""
+    """Return how the numbers of a forecast are written; of an assumption nothing is known."""
     result = simulation.results.get(name)
     return PLAIN if result is None or result.kind is Kind.YES_NO else result.form
 

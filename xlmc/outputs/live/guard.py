@@ -69,7 +69,7 @@ PRINTED: Final[Mapping[str, str]] = {
 
 
 def proof(key: str, end: Literal["server", "page"], page_nonce: str, server_nonce: str) -> str:
-    """Return what only who knows the key can say to these two numbers: an HMAC with SHA-256, in hexadecimal."""
+    """Prove to these two numbers that the key is known: an HMAC with SHA-256, in hexadecimal."""
     text = " ".join((end, page_nonce, server_nonce))
     return hmac.new(key.encode(), text.encode("utf-8", "surrogatepass"), "sha256").hexdigest()
 
@@ -128,7 +128,7 @@ class Guard:
         return ticket
 
     def use_page(self, ticket: str) -> str | None:
-        """Return the page of a ticket, once, within a minute; None where there is none."""
+        """Return the page of a ticket, once, within a minute; otherwise None."""
         text, until = self._pages.pop(ticket, ("", 0.0))
         return text if text and self._clock() <= until else None
 

@@ -72,7 +72,7 @@ class AtRest:
 
     @property
     def changes(self) -> tuple[str, ...]:
-        """What differs from the workbook, in words."""
+        """Say what differs from the workbook."""
         return tuple(in_words(self.own.definitions, self.adjustments))
 
 
@@ -96,14 +96,14 @@ def save_result(state: AtRest, book: Path, what: str) -> Path:
 
 
 def _label(state: AtRest) -> str:
-    """What tells files of a changed state from those of the workbook: `-dry road`, `-changed`."""
+    """Return what tells files of a changed state from those of the workbook: `-dry road`, `-changed`."""
     if not state.adjustments:
         return ""
     return f"-{_NO_NAME.sub('_', state.name).strip(' .')[:_LONGEST].strip(' .') or 'changed'}"
 
 
 def edited_state(own: CompiledModel, adjustments: Adjustments, name: str) -> EditedWorkbook:
-    """A copy of the workbook with a state typed into it, not written yet.
+    """Return a copy of the workbook with a state typed into it, not written yet.
 
     Raises:
         WorkbookError, DefinitionError: as for `save_result`.
@@ -112,7 +112,7 @@ def edited_state(own: CompiledModel, adjustments: Adjustments, name: str) -> Edi
 
 
 def page_of(state: AtRest) -> str:
-    """The page of results of a state, as `save_result` writes it.
+    """Return the page of results of a state, as `save_result` writes it.
 
     Raises:
         WorkbookError, DefinitionError, SimulationError: as for `save_result`.
@@ -121,7 +121,7 @@ def page_of(state: AtRest) -> str:
 
 
 def _run_of_copy(state: AtRest) -> RunResult:
-    """The run of a copy of the workbook with the state typed into it."""
+    """Run a copy of the workbook with the state typed into it."""
     edited, book = edited_state(state.own, state.adjustments, state.name), state.own.workbook
     run = run_model(build_model(read_workbook(edited.data, book.name), state.own.path), RunOptions())
     if not _is_same(run, state.run):
@@ -131,7 +131,7 @@ def _run_of_copy(state: AtRest) -> RunResult:
 
 
 def _is_same(first: RunResult, second: RunResult) -> bool:
-    """Whether two runs have the same accepted trials, to the last bit."""
+    """Return whether two runs have the same accepted trials, to the last bit."""
     columns = [(run.trial_index, *run.inputs.values(), *run.forecasts.values()) for run in (first, second)]
     return len(columns[0]) == len(columns[1]) and all(
         mine.tobytes() == theirs.tobytes() for mine, theirs in zip(*columns, strict=True)
@@ -168,7 +168,7 @@ def write_changes(state: AtRest, book: Path, *, into: bool) -> str:
 
 
 def _summary(edited: EditedWorkbook) -> str:
-    """How many cells were typed into, and what Excel must still do."""
+    """Say how many cells were typed into, and what Excel must still do."""
     count = len(edited.cells)
     cells = f"{count} cells were typed into" if count > 1 else "1 cell was typed into"
     formulas = f", {edited.computed:,} formulas have new values" if edited.computed else ""

@@ -39,7 +39,7 @@ class History:
 
     @property
     def goes(self) -> tuple[bool, bool]:
-        """Whether there is something to undo, and something to redo."""
+        """Return whether there is something to undo, and something to redo."""
         return bool(self._before), bool(self._after)
 
     def note(self, before: Moment, now: Moment, dragged: tuple[str, ...] | None) -> None:
@@ -64,11 +64,11 @@ class History:
             those[:] = [replace(each, stored={**each.stored, **more}) for each in those]
 
     def undo(self, now: Moment, fitting: Callable[[Moment], Moment]) -> Moment | None:
-        """The last moment that differs from now, as `fitting` makes it of what was noted; None where there is none."""
+        """Return the last moment that differs from now, as `fitting` makes it of what was noted; otherwise None."""
         return self._go(self._before, self._after, now, fitting)
 
     def redo(self, now: Moment, fitting: Callable[[Moment], Moment]) -> Moment | None:
-        """The moment that was undone last; see `undo`."""
+        """Return the moment that was undone last; see `undo`."""
         return self._go(self._after, self._before, now, fitting)
 
     def _go(

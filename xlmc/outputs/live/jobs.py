@@ -85,7 +85,7 @@ class View:
 
     @classmethod
     def of(cls, sent: Iterable[PageMessage], order: Sequence[str]) -> View:
-        """The union of what the windows show, with the forecasts in the order of the workbook."""
+        """Return the union of what the windows show, with the forecasts in the order of the workbook."""
         views = list(sent)
         seen = {name for each in views for name in each["forecasts"]}
         chosen = {name for each in views for name in each["chosen"]}
@@ -187,7 +187,7 @@ class StateRun:
     draws: bool
 
     def run(self, wanted: Wanted, report_share: ReportShare, clock: Clock) -> Outcome:
-        """See `Work`."""
+        """Do it; see `Work`."""
 
         def watch(progress: Progress) -> None:
             if not wanted():
@@ -236,7 +236,7 @@ class StateRun:
         return Outcome(tuple(messages), found, seconds)
 
     def _messages(self, found: RunResult, model: CompiledModel, base: Bases | None) -> list[Message]:
-        """What is shown of a run."""
+        """Return what is shown of a run."""
         resting, view = self.stage == "rest", self.view
         frame = frame_of(found, self.behind, view.forecasts, base, moving=not resting, fits=resting and view.fits)
         messages = [_frame("rest" if resting else "moving", self.version, self.seq, frame)]
@@ -248,7 +248,7 @@ class StateRun:
 
 
 def charts_of(simulation: RunResult, behind: RunResult | None, seq: int, sight: Sight) -> Work:
-    """The charts of a run that is done, for what can be seen now."""
+    """Make the charts of a finished run, for what can be seen now."""
     version, names, fits, _ = sight
 
     def run(wanted: Wanted, *_: object) -> Outcome:
@@ -260,7 +260,7 @@ def charts_of(simulation: RunResult, behind: RunResult | None, seq: int, sight: 
 
 
 def sketched_tab(simulation: RunResult, version: int, tab: Tab, most: float) -> Work:
-    """What matters, of the run of a state that moves; given up where it takes more than `most` seconds."""
+    """Make *What matters* of the run of a state that moves; it is given up if it takes more than `most` seconds."""
 
     def run(_wanted: Wanted, _report_share: ReportShare, clock: Clock) -> Outcome:
         begun = clock()
@@ -272,7 +272,7 @@ def sketched_tab(simulation: RunResult, version: int, tab: Tab, most: float) -> 
 
 
 def tab_of(simulation: RunResult, version: int, tab: Tab) -> Work:
-    """The contents of an open tab."""
+    """Make the contents of an open tab."""
 
     def run(wanted: Wanted, report_share: ReportShare, _clock: Clock) -> Outcome:
         with looking(_giving_up(wanted)):
@@ -282,7 +282,7 @@ def tab_of(simulation: RunResult, version: int, tab: Tab) -> Work:
 
 
 def scenario_table(comparison: Comparison, asked: int) -> Work:
-    """All scenarios in one table, those of the workbook and those that are kept in the window.
+    """Put all scenarios into one table, those of the workbook and those that are kept in the window.
 
     Args:
         comparison: of them; what is done of it is kept where the work is given up.
@@ -302,7 +302,7 @@ def scenario_table(comparison: Comparison, asked: int) -> Work:
 
 
 def _giving_up(wanted: Wanted) -> Callable[[], None]:
-    """Ends work that is not wanted any more."""
+    """Return a check that ends work which is not wanted any more."""
 
     def look() -> None:
         if not wanted():

@@ -64,14 +64,14 @@ class Library:
         self.only = None if book is None else self._add(book)
 
     def path(self, key: str) -> Path | None:
-        """The workbook of a key; None where there is none, or where it is no longer one that may be opened."""
+        """Return the workbook of a key; None if there is none, or if it may not be opened any more."""
         found = self._paths.get(key)
         if found is None or not self._is_inside(found):
             return None
         return found
 
     def books(self) -> list[dict[str, str]]:
-        """The workbooks in the folder: name and key."""
+        """Return the workbooks in the folder: name and key."""
         if self.folder is None:
             return []
         try:
@@ -82,7 +82,7 @@ class Library:
         return [{"name": printable(each.name), "key": self._add(each)} for each in found[:_MOST_LISTED]]
 
     def recent(self) -> list[dict[str, str]]:
-        """The workbooks that were opened before: name, folder and key."""
+        """Return the workbooks that were opened before: name, folder and key."""
         try:
             found = self.keeper.recent()
         except XlmcError as error:
@@ -94,18 +94,18 @@ class Library:
         ]
 
     def templates(self) -> list[dict[str, str]]:
-        """Templates: name, question and key."""
+        """Return the templates: name, question and key."""
         return [{"name": each.name, "question": each.question, "key": key} for key, each in self._samples.items()]
 
     def opened(self, path: Path) -> None:
-        """A workbook was opened."""
+        """Note that a workbook was opened."""
         try:
             self.keeper.opened(path)
         except XlmcError as error:
             self.trouble = str(error)
 
     def copy_template(self, key: str) -> str:
-        """Copy a template into the folder, under a name that is free; the copy's key.
+        """Copy a template into the folder, under a name that is free; returns the copy's key.
 
         Raises:
             WorkbookError: there is no such template, or it cannot be written.
@@ -123,7 +123,7 @@ class Library:
         return self._add(target)
 
     def take(self, name: str, data: bytes) -> str:
-        """Keep a workbook that was dropped, in a folder of the user's own; its key.
+        """Keep a workbook that was dropped, in a folder of the user's own; returns its key.
 
         Raises:
             WorkbookError: it is no workbook, or cannot be written.
@@ -150,7 +150,7 @@ class Library:
         return key
 
     def _is_inside(self, path: Path) -> bool:
-        """Whether a workbook of the folder lies in it in truth, not by a link that leads out."""
+        """Return whether a workbook of the folder truly lies in it, not by a link that leads out."""
         if self.folder is None or path.parent != Path(os.path.abspath(self.folder)):
             return True
         return Path(os.path.realpath(path)).is_relative_to(os.path.realpath(self.folder))

@@ -55,12 +55,12 @@ class Moving:
     reusing: ReusingRunner
 
     def runner(self, block: int) -> ModelRunner:
-        """Runs its blocks, of so many trials each."""
+        """Return what runs its blocks, of so many trials each."""
         return self.reusing.runner(self.model, min(block, self.reusing.largest_block))
 
     @property
     def base(self) -> dict[str, float | None] | None:
-        """The forecasts at the base case; None where there is none."""
+        """Return the forecasts at the base case; otherwise None."""
         return self.reusing.base(self.model)
 
 
@@ -80,7 +80,7 @@ class KnownModels:
         self._last: tuple[CompiledModel, Adjustments, CompiledModel] | None = None
 
     def at_rest(self, adjustments: Adjustments) -> CompiledModel:
-        """The model of a state.
+        """Return the model of a state.
 
         Raises:
             DefinitionError, FormulaError: as for `applied`.
@@ -95,7 +95,7 @@ class KnownModels:
         return self._moved(holding, adjustments.numbers(self.own.definitions))
 
     def moving(self, adjustments: Adjustments) -> Moving:
-        """What a state is run with while it moves.
+        """Return what a state is run with while it moves.
 
         Raises:
             DefinitionError, FormulaError: as for `applied`.
@@ -115,14 +115,14 @@ class KnownModels:
         return Moving(model, reusing if reusing.holds_for(model) else self._new_runner(model))
 
     def _moved(self, model: CompiledModel, adjustments: Adjustments) -> CompiledModel:
-        """The model with other numbers; a state is first run with few trials, then with more, then at rest."""
+        """Return the model with other numbers; a state is first run with few trials, then with more, then at rest."""
         if self._last is None or self._last[0] is not model or self._last[1] != adjustments:
             changes = changes_of(model.definitions, adjustments)
             self._last = model, adjustments, applied(model, changes) if changes else model
         return self._last[2]
 
     def _of_state(self, state: _State, adjustments: Adjustments) -> CompiledModel:
-        """The workbook's own model but for what is held; the last ones are kept."""
+        """Return the workbook's own model but for what is held; the last ones are kept."""
         if state not in self._holding:
             changes = changes_of(self.own.definitions, adjustments.frozen_part(self.own.definitions))
             self._holding[state] = applied(self.own, changes)
@@ -144,7 +144,7 @@ class KnownModels:
 
 
 def _engine(model: CompiledModel) -> str:
-    """What computes states that move: the compiled engine where the workbook asks for it, or where it soon pays."""
+    """Choose what computes states that move: the compiled engine if the workbook asks for it, or if it soon pays."""
     compiled = find_spec("llvmlite") is not None
     if model.definitions.settings.engine == "jit" and compiled:
         return "jit"
@@ -153,7 +153,7 @@ def _engine(model: CompiledModel) -> str:
 
 
 def _shapes(graph: Graph) -> int:
-    """How many formulas there are that differ by more than numbers and references; those filled down do not."""
+    """Count the formulas that differ by more than numbers and references; those filled down do not."""
     return len({_IN_SHAPES.sub("#", graph.text(cell)) for cell in graph.formulas})
 
 
@@ -173,7 +173,7 @@ def _state_of(definitions: Definitions, adjustments: Adjustments) -> _State:
 
 
 def _frozen_values(own: CompiledModel, state: _State) -> dict[str, float] | None:
-    """The value of each assumption that is held; None where holding it changes more than the values of draws."""
+    """Return the value of each held assumption; None if holding it changes more than the values of draws."""
     named = {each.name: each for each in own.live}
     grouped = {name for group in own.groups for name in group.names}
     found: dict[str, float] = {}
@@ -196,7 +196,7 @@ def _frozen_values(own: CompiledModel, state: _State) -> dict[str, float] | None
 
 
 def _holding_still(definitions: Definitions, values: Mapping[str, float]) -> Definitions:
-    """The definitions with assumptions that have a single value each."""
+    """Return the definitions with assumptions that have a single value each."""
 
     def still(assumption: Assumption) -> Assumption:
         if assumption.name not in values:

@@ -79,7 +79,7 @@ class Window:
         self._more.set()
 
     async def next(self) -> str:
-        """The next message, when there is one."""
+        """Return the next message, when there is one."""
         while not self._waiting:
             self._more.clear()
             await self._more.wait()
@@ -133,7 +133,7 @@ class OpenBook:
             pool.shutdown(wait=False, cancel_futures=True)
 
     def join(self) -> Window:
-        """A window that was opened, or came back."""
+        """Take a window that was opened, or came back."""
         window = Window()
         self._windows.add(window)
         for message in self.session.greeting() if self.session is not None else ():
@@ -147,7 +147,7 @@ class OpenBook:
         return window
 
     def leave(self, window: Window) -> None:
-        """A window was closed; a handle that it held is let go."""
+        """Take it that a window was closed; a handle that it held is let go."""
         self._windows.discard(window)
         if window.holds and self.session is not None:
             self._send([self.session.let_go()])
@@ -205,7 +205,7 @@ class OpenBook:
         window.refused = bool(why)
 
     def _is_over(self, window: Window) -> None:
-        """What was refused of a state does not matter any more when there is another one."""
+        """Take back what was said of a state, as there is another one."""
         self._refuse(window, "")
         for about in ("save", "study"):
             self._say(about, "")
@@ -225,7 +225,7 @@ class OpenBook:
         self._send([message])
 
     def _say(self, about: str, text: str) -> None:
-        """Tell of a trouble, or, with an empty text, that it is over."""
+        """Tell of a trouble; an empty text says that it is over."""
         if text:
             self._trouble[about] = text
         elif self._trouble.pop(about, None) is None:
@@ -250,7 +250,7 @@ class OpenBook:
         return await asyncio.get_running_loop().run_in_executor(self._aside, what)
 
     async def _read(self) -> CompiledModel | None:
-        """The workbook's model; None where it cannot be read or understood, which is told."""
+        """Read the workbook's model; returns None if it cannot be read or understood, and tells why."""
         trouble = ""
         for seconds in _SETTLING:
             await asyncio.sleep(seconds)
@@ -413,7 +413,7 @@ def _leave_to_itself() -> None:
 
 
 def _stamp(path: Path) -> tuple[int, ...] | None:
-    """What a file that was saved has another of."""
+    """Return what differs once a file was saved."""
     try:
         found = path.stat()
     except OSError:

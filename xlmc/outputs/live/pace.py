@@ -53,16 +53,16 @@ class Pace:
 
     @property
     def is_slow(self) -> bool:
-        """Whether a run of `MOVING_TRIALS` takes long; before the first run, whether it looks so."""
+        """Return whether a run of `MOVING_TRIALS` takes long; before the first run, whether it looks so."""
         return self._many if False not in self._seconds else self._seconds[False] * MOVING_TRIALS > _SLOW
 
     @property
     def quick_trials(self) -> int:
-        """Trials of a short run before a longer one."""
+        """Return the trials of a short run before a longer one."""
         return self._trials_in(_QUICK, resting=False)
 
     def piece(self, *, resting: bool) -> int:
-        """Trials after which a run looks whether it is still wanted."""
+        """Return the trials after which a run looks whether it is still wanted."""
         if not resting:
             return _SMALLEST_PIECE
         if not self.is_slow:
@@ -70,6 +70,6 @@ class Pace:
         return max(_SMALLEST_PIECE, self._trials_in(_PIECE, resting=resting))
 
     def _trials_in(self, seconds: float, *, resting: bool) -> int:
-        """How many trials take so long, a power of two; of a run at rest, or of one that moves."""
+        """Return how many trials take so long, a power of two; of a run at rest, or of one that moves."""
         known = self._seconds.get(resting, self._seconds.get(False))
         return _QUICK_TRIALS if not known else 1 << max(_FEWEST_TRIALS, int(seconds / known)).bit_length() - 1

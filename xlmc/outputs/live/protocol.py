@@ -137,7 +137,7 @@ def _are_texts(value: object) -> bool:
 
 
 def _are_numbers(value: object) -> bool:
-    """Whether it is a mapping of few names to numbers."""
+    """Return whether it is a mapping of few names to numbers."""
     return (
         isinstance(value, dict)
         and 0 < len(value) <= _MOST_AT_ONCE
@@ -193,7 +193,7 @@ _FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
 
 
 def read_message(text: str | bytes) -> PageMessage:
-    """What the page said.
+    """Read what the page said.
 
     Raises:
         ProtocolError: it is nothing that a page says.
@@ -215,5 +215,5 @@ def read_message(text: str | bytes) -> PageMessage:
 
 
 def written(message: Message) -> str:
-    """The message as text."""
+    """Write a message as text."""
     return json.dumps(message, allow_nan=False, separators=(",", ":"), ensure_ascii=True)

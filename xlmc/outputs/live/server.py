@@ -165,7 +165,7 @@ class LiveServer:
 
     @property
     def link(self) -> str:
-        """A link that opens the window, once, within a minute."""
+        """Return a link that opens the window, once, within a minute."""
         only = self._library.only
         return f"http://127.0.0.1:{self.port}/{'' if only is None else f'book/{only}'}#{self.guard.new_code()}"
 
@@ -434,7 +434,7 @@ _TYPES: Final = {".js": "text/javascript", ".css": "text/css"}
 
 
 async def _asset(request: Request) -> Response:
-    """A script or a style; they are the same for everybody, and hold nothing of a workbook."""
+    """Hand out a script or a style, which are the same for everybody and hold nothing of a workbook."""
     found = _ASSETS.get(request.path_params["name"])
     if found is None:
         return _refusal("There is no such file.", 404)

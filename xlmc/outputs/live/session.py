@@ -141,7 +141,7 @@ class Session:
     # What windows are told
 
     def greeting(self) -> list[Message]:
-        """All that a window needs that was just opened, or that comes back."""
+        """Return all that a window needs that was just opened, or that comes back."""
         return [book_message(self.own), self._state(), *self._last.values(), *self._trouble()]
 
     def _new_models(self) -> KnownModels:
@@ -149,7 +149,7 @@ class Session:
 
     @property
     def _of_a_run(self) -> int:
-        """Bytes of the trials of a run that stay in memory."""
+        """Return the bytes of the trials of a run that stay in memory."""
         return int(_OF_A_RUN * (self._memory << 20))
 
     def _state(self) -> Message:
@@ -193,7 +193,7 @@ class Session:
         return Replies(all=[self._state()] if changed else [])
 
     def _take(self, sent: PageMessage) -> Replies | bool:
-        """Do what a message asks for; what to say, or whether the state is another one now."""
+        """Do what a message asks for; returns what to say, or whether the state is another one now."""
         match sent.kind:
             case "set":
                 return self._set(sent)
@@ -241,7 +241,7 @@ class Session:
         return Moment(self.adjustments, dict(self.stored), self.shown)
 
     def _go(self, where: str) -> Replies:
-        """Undo, or redo."""
+        """Go back to the moment before, or forth again."""
 
         def fitting(each: Moment) -> Moment:
             return Moment(each.adjustments.only(self.own.definitions), each.stored, each.shown)
@@ -334,7 +334,7 @@ class Session:
         return [book_message(self.own), self._state(), {"kind": "news", "text": text, "link": ""}, *self._trouble()]
 
     def at_rest(self) -> AtRest:
-        """The state that is shown, with its run.
+        """Return the state that is shown, with its run.
 
         Raises:
             XlmcError: the run is not done yet, or not possible.
@@ -348,12 +348,12 @@ class Session:
     # What is to be done
 
     def job(self) -> Job | None:
-        """What comes next; None where all is done."""
+        """Return what comes next; None if all is done."""
         self._current = self._run() or self._shown() or self._of_scenarios() or self._part()
         return self._current
 
     def _run(self) -> Job | None:
-        """A run of the state, or what is shown of it while it moves."""
+        """Return a run of the state, or what is shown of it while it moves."""
         version = self.version
         if self._is_faulty or self._stopped_at == version:
             return None
@@ -366,7 +366,7 @@ class Session:
         return None
 
     def _shown(self) -> Job | None:
-        """The charts of a run at rest for what can be seen now."""
+        """Return the charts of a run at rest for what can be seen now."""
         if self.rest is None or not self._is_at_rest or self._done.get("shown") == self._sight:
             return None
         work = charts_of(self.rest, self._compared, self._seq, self._sight)
@@ -379,7 +379,7 @@ class Session:
         return Job("compare", self.version, self._dragged, work, {"compare": self._compare})
 
     def _part(self) -> Job | None:
-        """The contents of an open tab."""
+        """Return the contents of an open tab."""
         if self.rest is None or not self._is_at_rest:
             return None
         for tab in self.view.tabs:
@@ -397,22 +397,22 @@ class Session:
 
     @property
     def _now(self) -> tuple[int, Adjustments]:
-        """What tells a state from others: the workbook, and what was changed."""
+        """Return what tells a state from others: the workbook, and what was changed."""
         return id(self.own), self.adjustments
 
     @property
     def _drawn(self) -> tuple[int, Adjustments]:
-        """What the trials depend on: all but how answers are stated."""
+        """Return what the trials depend on: all but how answers are stated."""
         return id(self.own), replace(self.adjustments, forecasts={})
 
     @property
     def _compared(self) -> RunResult | None:
-        """The state to be drawn behind; None where it is the one in front."""
+        """Return the state to be drawn behind; None if it is the one in front."""
         return None if self._behind_of == self._now else self.behind
 
     @property
     def _sight(self) -> Sight:
-        """What the charts at rest depend on."""
+        """Return what the charts at rest depend on."""
         return self.version, self.view.forecasts, self.view.fits, id(self._compared)
 
     def _wants(self, stage: str) -> bool:
@@ -431,18 +431,18 @@ class Session:
 
     @property
     def unkept(self) -> Adjustments:
-        """What would be lost with the windows: the state now, unless a scenario holds it, or what is still offered."""
+        """Return what would be lost with the windows: the state now, unless a scenario holds it, or what is offered."""
         if self.adjustments and self.adjustments not in self.stored.values():
             return self.adjustments
         return self.offered
 
     @property
     def _is_faulty(self) -> bool:
-        """Whether the state was tried and is not possible."""
+        """Return whether the state was tried and is not possible."""
         return self._problem is not None and self._done.get("tried") == self.version
 
     def _work(self, stage: Stage) -> Work:
-        """What a stage before the run at rest, or that run itself, has to do."""
+        """Return what a stage before the run at rest, or that run itself, has to do."""
         if stage == "sketch":
             assert self._moving is not None
             tab = next(tab for tab in self.view.tabs if tab.key == SKETCHED)
@@ -465,13 +465,13 @@ class Session:
         ).run
 
     def _shows_draws(self, stage: Stage) -> bool:
-        """Whether draws of a run that moves are shown: in a scatter, or by what matters where there is time for it."""
+        """Return whether draws of a run that moves are shown: in a scatter, or in *What matters* if there is time."""
         keys = {tab.key for tab in self.view.tabs}
         sketches = SKETCHED in keys and stage == "moving" and self._sketch_seconds < _SKETCH
         return "pairs" in keys or sketches
 
     def finish(self, job: Job, outcome: Outcome) -> list[Message]:
-        """Take what a job found; what windows are told of it."""
+        """Take what a job found; returns what windows are told of it."""
         if job.stage == "sketch" or job.stage not in RUNS:
             return self._finish_shown(job, outcome)
         if outcome.problem is not None:
@@ -517,7 +517,7 @@ class Session:
         return messages
 
     def superseded(self, job: Job) -> list[Message]:
-        """A job was given up: something newer is wanted, or a person stopped it."""
+        """Note that a job was given up: something newer is wanted, or a person stopped it."""
         if job.stage == "sketch":
             self._sketch_seconds = math.inf  # until a state is at rest
             return []
@@ -528,7 +528,7 @@ class Session:
         return [_over(job, "stopped" if stopped else "over")]
 
     def wanted(self, job: Job) -> bool:
-        """Whether a job's outcome is still wanted: of the newest state, and of what is open."""
+        """Return whether a job's outcome is still wanted: of the newest state, and of what is open."""
         is_open = all(key in self.view.tabs for key in job.done if isinstance(key, Tab))
         asked = job.done.get("compare", self._compare) == self._compare
         return not self._ended and job.version == self.version and is_open and asked and self._stopped is not job

@@ -32,7 +32,7 @@ _PATIENCE: Final = 5.0
 
 
 def state_folder() -> Path:
-    """The folder in which scenarios are kept."""
+    """Return the folder in which scenarios are kept."""
     if sys.platform == "win32":
         base = os.environ.get("LOCALAPPDATA") or str(Path.home() / "AppData" / "Local")
         return Path(base) / "xlmc" / "live"
@@ -42,7 +42,7 @@ def state_folder() -> Path:
 
 
 class Keeper:
-    """Reads and writes them.
+    """Load and store the scenarios and the last workbooks of a user.
 
     Several windows of several programs may be open on one workbook: what each has kept since it read the file last is
     put into what the file holds by then, so that none takes the other's scenarios away.
@@ -57,7 +57,7 @@ class Keeper:
 
     @property
     def dropped(self) -> Path:
-        """The folder of workbooks that were dropped onto the window."""
+        """Return the folder of workbooks that were dropped onto the window."""
         return self._folder / "dropped"
 
     def make_folder(self) -> None:
@@ -70,7 +70,7 @@ class Keeper:
         self._folder.chmod(0o700)
 
     def scenarios(self, book: Path) -> tuple[dict[str, Adjustments], Adjustments]:
-        """The scenarios of a workbook by name, and the state that was not kept under a name.
+        """Return the scenarios of a workbook by name, and the state that was not kept under a name.
 
         Raises:
             WorkbookError: there is a file of them, and it cannot be read; it is set aside.
@@ -112,7 +112,7 @@ class Keeper:
         return stored
 
     def recent(self) -> list[Path]:
-        """The workbooks that were opened last and are still there, the last first.
+        """Return the workbooks that were opened last and are still there, the last first.
 
         Raises:
             WorkbookError: the list cannot be read; it is set aside.
@@ -143,7 +143,7 @@ class Keeper:
         return self._folder / f"{name}.json"
 
     def _read(self, path: Path) -> dict[str, Any] | None:
-        """A file's contents; None where there is none.
+        """Return a file's contents; otherwise None.
 
         Raises:
             WorkbookError: it is no JSON object; it is set aside.
@@ -182,7 +182,7 @@ class Keeper:
 
     @contextmanager
     def _alone(self, path: Path) -> Iterator[None]:
-        """While no other program reads and writes the file; one that died holds it up for some seconds."""
+        """Keep other programs from the file meanwhile; one that died holds it up for some seconds."""
         self.make_folder()
         lock, until = path.with_suffix(".lock"), time.monotonic() + _PATIENCE
         while True:
@@ -202,7 +202,7 @@ class Keeper:
 def _merged(
     seen: Mapping[str, Adjustments], ours: Mapping[str, Adjustments], theirs: Mapping[str, Adjustments]
 ) -> dict[str, Adjustments]:
-    """What two windows keep, each of which began with what was seen last; of one name with two contents, both."""
+    """Merge what two windows keep, each of which began with what was seen last; one name with two contents is two."""
     found = {name: each for name, each in theirs.items() if name in ours or name not in seen}
     for name, each in ours.items():
         changed_here, changed_there = seen.get(name) != each, theirs.get(name) != seen.get(name)
@@ -217,7 +217,7 @@ def _merged(
 
 
 def _is_file(path: str) -> bool:
-    """Whether there is such a file; a name that no file can have, or that may not be looked at, is none."""
+    """Return whether there is such a file; a name that no file can have, or that may not be looked at, is none."""
     try:
         return Path(path).is_file()
     except (OSError, ValueError):

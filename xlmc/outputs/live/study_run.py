@@ -105,7 +105,7 @@ class StudyRun:
 
     @property
     def is_running(self) -> bool:
-        """Whether it is going on."""
+        """Return whether it is going on."""
         return bool(self.last["state"] == "running")
 
     async def cancel(self) -> None:
@@ -147,7 +147,7 @@ class StudyRun:
 
 
 class _Steps:
-    """The command's standard error: a terminal, where the system has such, so that it tells what it is doing.
+    """Open the command's standard error: a terminal, if the system has such, so that it tells what it is doing.
 
     Args:
         note: takes each step.

@@ -21,7 +21,7 @@ Row = TypeVar("Row", bound="_HasName")
 
 
 def what_changed(before: CompiledModel, after: CompiledModel) -> list[str]:
-    """Phrases, those on assumptions first; none where nothing that a run depends on is other."""
+    """Return phrases, those on assumptions first; none if nothing that a run depends on has changed."""
     found = [
         *_rows("assumption", _named(before.assumptions), _named(after.assumptions), _assumption),
         *_rows("filter", _filters(before), _filters(after), _filter),
@@ -43,7 +43,7 @@ def _named(rows: Iterable[Row]) -> dict[str, Row]:
 
 
 def _filters(model: CompiledModel) -> dict[str, Filter]:
-    """All filters by name, and evidence, those that are not used among them."""
+    """Return all filters and evidence by name, those that are not used among them."""
     definitions = model.definitions
     idle = (
         Filter(each.name, each.cell, each.row, evidence=each, used=False)
@@ -62,7 +62,7 @@ def _names(what: str, before: Iterable[str], after: Iterable[str]) -> Iterator[s
 def _rows(
     what: str, before: Mapping[str, Row], after: Mapping[str, Row], differing: Callable[[Row, Row], Iterator[str]]
 ) -> Iterator[str]:
-    """What changed in rows with names: in those that are still there, those that are new, and those that are gone."""
+    """Say what changed in rows with names: those that are still there, those that are new, and those that are gone."""
     for name, row in after.items():
         phrases = list(differing(before[name], row)) if name in before else []
         if phrases:
@@ -127,7 +127,7 @@ def _settings(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
 
 
 def _cells(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
-    """The needed cells that hold another formula or another typed number; those of assumptions are told above."""
+    """Name the needed cells that hold another formula or number; those of assumptions are told above."""
     assumptions = {each.cell for model in (before, after) for each in model.assumptions}
     cells = [
         cell
@@ -141,6 +141,6 @@ def _cells(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
 
 
 def _content(model: CompiledModel, cell: object) -> object:
-    """The formula, where there is one: its saved value may be other because an assumption's is."""
+    """Return the formula, if there is one: its saved value may differ because an assumption's does."""
     content = model.workbook.content(cell)  # type: ignore[arg-type]  # a cell
     return content.formula or content.value

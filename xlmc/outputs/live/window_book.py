@@ -72,7 +72,7 @@ _STEPS: Final = 50.0
 
 
 def assumption_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, Any]]:
-    """Every assumption with its numbers as they are now.
+    """Return every assumption with its numbers as they are now.
 
     Args:
         own: the model of the workbook.
@@ -153,7 +153,7 @@ def _step(span: float, size: float) -> float:
 
 
 def shapes_of(model: CompiledModel, names: Sequence[str] | None = None) -> dict[str, dict[str, Any]]:
-    """The distributions that are drawn, small: name -> `low`, `high` and the heights of bars of equal width, up to 1.
+    """Return the drawn distributions, small: name -> `low`, `high` and the heights of bars of equal width, up to 1.
 
     Args:
         model: whose.
@@ -167,7 +167,7 @@ def shapes_of(model: CompiledModel, names: Sequence[str] | None = None) -> dict[
 
 
 def _shape(values: NDArray[np.float64]) -> dict[str, Any] | None:
-    """The shape of `(q,)` quantiles; None where they are not numbers."""
+    """Return the shape of `(q,)` quantiles; None if they are no numbers."""
     finite_draws = values[np.isfinite(values)]
     if finite_draws.size < _SHAPE_DRAWS // 2:
         return None
@@ -240,7 +240,7 @@ def _limits(filter_: Filter, own: Filter, definitions: Definitions) -> Iterator[
 
 
 def _law(filter_: Filter) -> Law | None:
-    """Return the law of evidence; None where there is none, or where its numbers are none."""
+    """Return the law of evidence; None if there is none, or if its numbers are impossible."""
     evidence = filter_.evidence
     if evidence is None or not isinstance(evidence.reading, float) or any(evidence.cells):
         return None
@@ -252,7 +252,7 @@ def _law(filter_: Filter) -> Law | None:
 
 
 def _shape_of_error(law: Law) -> dict[str, Any] | None:
-    """Return how likely a quantity is by its reading alone, as `shapes_of`; None where it is bounded on one side."""
+    """Return how likely a quantity is by its reading alone, as `shapes_of`; None if it is bounded on one side."""
     if isinstance(law, Within):
         return None if law.low is None or law.high is None else {"low": law.low, "high": law.high, "heights": [1.0]}
     z = np.linspace(-_FARTHEST, _FARTHEST, _SHAPE_BARS + 1)
@@ -276,18 +276,18 @@ def stated_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, 
 
 
 def _reach(filter_: Filter) -> Iterator[str]:
-    """Of which forecasts a filter is, where it is not of all."""
+    """Say of which forecasts a filter is, if it is not of all."""
     if filter_.only_for:
         yield f"only for {'; '.join(filter_.only_for)}"
 
 
 def forecast_rows(model: CompiledModel) -> list[dict[str, Any]]:
-    """Every forecast: its name and units."""
+    """Return every forecast: its name and units."""
     return [{"name": each.name, "units": each.units, "cell": str(each.cell)} for each in model.forecasts]
 
 
 def book_message(model: CompiledModel) -> Message:
-    """The message that tells of the workbook as it is."""
+    """Return the message that tells of the workbook as it is."""
     return {
         "kind": "book",
         "name": model.workbook.name,
@@ -301,13 +301,13 @@ def book_message(model: CompiledModel) -> Message:
 
 
 def _settings_text(model: CompiledModel) -> str:
-    """`200,000 trials, Monte Carlo, seed 999`."""
+    """Write the settings: `200,000 trials, Monte Carlo, seed 999`."""
     settings = model.definitions.settings
     return f"{settings.trials:,} trials, {METHODS[settings.sampling].name}, seed {settings.seed}"
 
 
 def scenario_rows(definitions: Definitions, stored: Mapping[str, Adjustments]) -> Iterator[Message]:
-    """The scenarios of the workbook, then those kept in the window, which replace one of the same name."""
+    """Return the scenarios of the workbook, then those kept in the window, which replace one of the same name."""
     for scenario in definitions.scenarios:
         if scenario.name not in stored:
             shows = adjustments_of(definitions, scenario) is not None
@@ -317,7 +317,7 @@ def scenario_rows(definitions: Definitions, stored: Mapping[str, Adjustments]) -
 
 
 def known_scenario(definitions: Definitions, stored: Mapping[str, Adjustments], name: str) -> Adjustments | None:
-    """A scenario by name; None where there is none, or none that can be shown."""
+    """Return a scenario by name; None if there is none that can be shown."""
     if name in stored:
         return stored[name].only(definitions)
     found = next((each for each in definitions.scenarios if each.name == name), None)

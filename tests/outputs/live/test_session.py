@@ -402,9 +402,7 @@ def readings(tmp_path_factory):
 
 
 @pytest.mark.parametrize("moved", MOVED.values(), ids=MOVED)
-def test_readings_limits_that_go_and_how_answers_are_stated_give_what_the_edited_workbook_gives(
-    readings, tmp_path, moved, monkeypatch
-):
+def test_further_handles_give_what_the_edited_workbook_gives(readings, tmp_path, moved, monkeypatch):
     monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", moving := 3_000)
     path, model = readings
     session = Session(model)
@@ -430,15 +428,12 @@ def test_readings_limits_that_go_and_how_answers_are_stated_give_what_the_edited
     assert scenario_of(model.definitions, "kept", again) == scenario_of(model.definitions, "kept", session.adjustments)
     assert adjustments_of(model.definitions, scenario_of(model.definitions, "kept", again)) is not None
 
+    stage = "rest" if moved[0][0] == "forecast" else "moving"  # how answers are stated changes no trial
     session.receive(PageMessage("show", {"name": ""}))
-    if moved[0][0] != "forecast":
-        done(session, until(session, "moving"))
+    if stage == "moving":
+        done(session, until(session, stage))
     session.receive(PageMessage("show", {"name": "kept"}))
-    found = (
-        until(session, "moving" if moved[0][0] != "forecast" else "rest")
-        .run(lambda: True, lambda share: None, lambda: 0.0)
-        .simulation
-    )
+    found = until(session, stage).run(lambda: True, lambda share: None, lambda: 0.0).simulation
     expected = simulate(copy, trials=found.trials, sampling="mc", evidence=found.settings.evidence)
     assert found.trials in (moving, 4_000)
     assert found.trial_index.tobytes() == expected.trial_index.tobytes()

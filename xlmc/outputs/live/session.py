@@ -416,7 +416,7 @@ class Session:
         return self.version, self.view.forecasts, self.view.fits, id(self._compared)
 
     def _wants(self, stage: str) -> bool:
-        if self._done.get(stage) == self.version or (stage != "rest" and self._drawn == self._answered):
+        if self._done.get(stage) == self.version or (stage in ("quick", "moving") and self._drawn == self._answered):
             return False
         if stage == "sketch":
             shown = any(tab.key == SKETCHED for tab in self.view.tabs)

@@ -157,9 +157,9 @@ const Live = {
   },
 
   /** From the event of a move to the frame in which its answer is drawn; first short runs of a slow workbook apart. */
-  measure({ seq, trials }) {
+  measure({ seq, trials, stage }) {
     const began = this.moves.get(seq);
-    const short = trials < LEAST_TRIALS;
+    const short = trials < LEAST_TRIALS && stage !== "rest";
     if (!short) for (const each of this.moves.keys()) if (each <= seq) this.moves.delete(each);
     if (began === undefined) return;
     requestAnimationFrame(() => (short ? this.firsts : this.latencies).push(performance.now() - began));

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import openpyxl
 import pytest
+from workbook_files import workbook_of
 
 pytestmark = pytest.mark.usefixtures("short_books")
 
@@ -101,3 +102,22 @@ def test_a_filter_without_a_limit_over_a_quantity_is_refused_by_what_its_cell_co
     assert outcome.err.count("Model!A3: The filter 'root' has no limit, and its cell is 0.94868") == 1
     assert "Fill in At least, At most, Above or Below" in outcome.err
     assert not list(tmp_path.glob("*-results.xlsx"))
+
+
+def test_solved_cells_and_decisions_are_shown(xlmc, tmp_path):
+    sheets = {
+        "Inputs": [["Name", "Value", "Low", "High"], ["a", 2, 1, 3], [], ["What", "Value"], ["x", 1], ["size", 5]],
+        "Model": [["Name", "Value"], ["y", "=Inputs!B2*Inputs!B5*Inputs!B6"]],
+        "Solve": [["Name", "Cell", "To", "By", "Low", "High"], ["the x", "=Model!B2", 30, "=Inputs!B5", 0, 100]],
+        "Decide": [["Name", "Cell", "Values", "Units"], ["Size", "=Inputs!B6", "5; 7.5", "m"]],
+    }
+    tables = {
+        "xlmc_assumptions": "Inputs!A1:D2",
+        "xlmc_forecasts": "Model!A1:B2",
+        "xlmc_solve": "Solve!A1:F2",
+        "xlmc_decisions": "Decide!A1:D2",
+    }
+    workbook_of(sheets, tables).save(tmp_path / "book.xlsx")
+    words = " ".join(xlmc("check", "book.xlsx").out.split())
+    assert "the x Inputs!B5 only 0 100 Model!B2 30" in words
+    assert "Size Inputs!B6 m 5; 7.5" in words

@@ -12,6 +12,7 @@ from xlmc.errors import SimulationError
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison import CompareArguments, Comparison
+    from xlmc.analysis.studies.decisions import DecideArguments, Decided
     from xlmc.analysis.studies.fitting import Fitting
     from xlmc.analysis.studies.methods import Study
     from xlmc.analysis.studies.screening import ScreenArguments, Screening
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
     from xlmc.analysis.studies.stability import Stability
     from xlmc.analysis.studies.uncertainty import TwoLoops, UncertaintyArguments
 
-__all__ = ["compare", "fit", "methods", "screen", "sensitivities", "stability", "uncertainty"]
+__all__ = ["compare", "decide", "fit", "methods", "screen", "sensitivities", "stability", "uncertainty"]
 
 
 def sensitivities(run: Simulation, *, assumptions: Collection[str] = ()) -> Sensitivities:
@@ -151,6 +152,24 @@ def stability(model: Model, *, trials: int | None = None, seed: int | None = Non
     from xlmc.analysis.studies.stability import stability
 
     return stability(model._compiled, trials=trials, seed=seed, jobs=jobs)
+
+
+def decide(model: Model, names: Iterable[str] = (), **options: Unpack[DecideArguments]) -> Decided:
+    """Run every combination of the values of one to three decisions, over the same random numbers.
+
+    Args:
+        model: of a workbook with a table `xlmc_decisions`; it stays as it is.
+        names: of decisions, joined by commas, `*` for any letters; all where there are none.
+        options: `trials`, `seed`, `sampling`, `engine`, `jobs` and `tell`, which
+            `xlmc.analysis.studies.decisions.decide` describes.
+
+    Raises:
+        DefinitionError: the workbook has no decisions.
+        SimulationError: there is no decision of a name, or there are too many decisions or combinations.
+    """
+    from xlmc.analysis.studies.decisions import decide
+
+    return decide(model._compiled, names, **options)
 
 
 def uncertainty(model: Model, **options: Unpack[UncertaintyArguments]) -> TwoLoops:

@@ -1,6 +1,6 @@
 """The command line: `xlmc new`, `xlmc prepare`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc calculate`,
 `xlmc simulate`, `xlmc open`, `xlmc report`, `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`,
-`xlmc stability`, `xlmc uncertainty`, `xlmc seek`.
+`xlmc stability`, `xlmc uncertainty`, `xlmc seek`, `xlmc decide`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it is; 2 bad input, with the cell and what
 to do; 130 interrupted by Ctrl-C; 143 ended by SIGTERM. Modules here import what costs time inside their functions.
@@ -24,6 +24,7 @@ from xlmc.cli.calculate import calculate
 from xlmc.cli.check import check
 from xlmc.cli.compare import compare
 from xlmc.cli.convert import convert
+from xlmc.cli.decide import decide
 from xlmc.cli.fit import fit
 from xlmc.cli.methods import methods
 from xlmc.cli.mistakes import did_you_mean, mistake
@@ -172,6 +173,7 @@ for _command in (
     replay,
     compare,
     screen,
+    decide,
     methods,
     stability,
     uncertainty,

@@ -122,7 +122,7 @@ def _standing(assumption: Assumption) -> str:
 
 
 def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> None:
-    from xlmc.analysis.results.statements.in_words import distribution_text, evidence_text, limits_text
+    from xlmc.analysis.results.statements.in_words import distribution_text, evidence_text, given_text, limits_text
     from xlmc.cli.printing import table
     from xlmc.montecarlo.distributions.parameters import show
     from xlmc.outputs.summary import percent
@@ -141,6 +141,29 @@ def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> 
             for f in definitions.forecasts
         ],
     )
+    if definitions.solves:
+        table(
+            "Cells that are solved for",
+            ("Name", "Solved for", "Root", "Low", "High", "So that", "Is"),
+            [
+                (
+                    s.name,
+                    str(s.by),
+                    s.root or "only",
+                    given_text(s.low),
+                    given_text(s.high),
+                    str(s.cell),
+                    given_text(s.to),
+                )
+                for s in definitions.solves
+            ],
+        )
+    if definitions.decisions:
+        table(
+            "Decisions",
+            ("Name", "Cell", "Units", "Values"),
+            [(d.name, str(d.cell), d.units, "; ".join(map(show, d.values))) for d in definitions.decisions],
+        )
     filters = [f for f in (*definitions.filters, *definitions.unused) if f.evidence is None]
     if filters:
         rows = [(f.name, str(f.cell), limits_text(f), f.because) for f in filters]

@@ -62,6 +62,7 @@ __all__ = [
     "document",
     "estimate_json",
     "save_json",
+    "scenario_json",
 ]
 
 FORMAT: Final = "xlmc results"
@@ -103,7 +104,7 @@ def document(simulation: RunResult, *, command: str | None = None) -> Json:
         simulation: the finished run.
         command: what the person typed, for the record.
     """
-    base, scenarios = base_case(simulation), [_scenario(each) for each in scenario_answers(simulation)]
+    base, scenarios = base_case(simulation), [scenario_json(each) for each in scenario_answers(simulation)]
     return {
         "format": FORMAT,
         "version": VERSION,
@@ -180,7 +181,8 @@ def check_json_path(path: Path) -> None:
         raise WorkbookError("JSON is written to a .json file", where=path, hint=f"Name it {path.stem + '.json'!r}")
 
 
-def _scenario(each: ScenarioAnswers) -> Json:
+def scenario_json(each: ScenarioAnswers) -> Json:
+    """Return the answers of a scenario, or of the workbook itself."""
     return {
         "name": None if each.scenario is None else each.scenario.name,
         "changes": "" if each.scenario is None else changes_text(each.scenario),

@@ -29,6 +29,7 @@ __all__ = [
     "Copula",
     "Correlation",
     "DataRange",
+    "Decision",
     "Definitions",
     "Filter",
     "Forecast",
@@ -269,6 +270,17 @@ def _said(given: Parameter) -> str:
 
 
 @dataclass(frozen=True, slots=True)
+class Decision:
+    """A cell that a person decides on: a run takes what it holds, and a study tries its values."""
+
+    name: str
+    cell: Cell
+    values: tuple[float, ...]
+    row: Cell
+    units: str = ""
+
+
+@dataclass(frozen=True, slots=True)
 class Correlation:
     """A Spearman rank correlation between two assumptions, by name as defined; of a model, `value` is a number.
 
@@ -326,7 +338,7 @@ class Definitions:
     holds. `switches` are the names of the rows of filters and evidence that can be used or not, each with the first
     cell of its row, and whether it is used. `feeding` are the other workbooks whose answers feed assumptions, `python`
     the cells that a function of Python computes, each with the call. `solves` are the rows of `xlmc_solve`; in a model
-    `rewritten` has their calls.
+    `rewritten` has their calls. `decisions` are the rows of `xlmc_decisions`.
     """
 
     assumptions: tuple[Assumption, ...] = ()
@@ -351,6 +363,7 @@ class Definitions:
     switches: Mapping[str, tuple[Cell, bool]] = field(default_factory=dict)
     python: Mapping[Cell, Expression] = field(default_factory=dict)
     solves: tuple[Solve, ...] = ()
+    decisions: tuple[Decision, ...] = ()
 
     def is_used(self, row: str) -> bool:
         """Return whether a filter or a row of evidence is used; see `switches`. What is no such row is not off."""

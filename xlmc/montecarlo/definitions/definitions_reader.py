@@ -30,6 +30,7 @@ from xlmc.montecarlo.definitions.in_cells.stand_ins import simtable_scenarios
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.assumptions import read_assumptions
 from xlmc.montecarlo.definitions.tables.correlations import read_correlations
+from xlmc.montecarlo.definitions.tables.decisions import read_decisions
 from xlmc.montecarlo.definitions.tables.evidence_rows import as_filter, read_evidence
 from xlmc.montecarlo.definitions.tables.filters import read_checks, read_filters
 from xlmc.montecarlo.definitions.tables.forecasts import read_forecasts
@@ -135,6 +136,7 @@ def read_definitions(
     forecasts = *forecasts, *dialogs.forecasts, *in_cells
     filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
     _remark_on_calls(calls, settings, findings)
+    decisions = read_decisions(workbook, tables["xlmc_decisions"], computed, findings)
     refuse_taken(solves, {each.cell: each.row for each in assumptions}, findings)
     drawn = {each.cell for each in assumptions if not each.frozen}
     what_if = tables_of_run(workbook, drawn, calls.shown.keys() | calls.unavailable.keys(), calls.rewritten)
@@ -184,6 +186,7 @@ def read_definitions(
         switches=dict(_switches([*rows, *evidence])),
         python=python,
         solves=solves,
+        decisions=decisions,
     )
 
 

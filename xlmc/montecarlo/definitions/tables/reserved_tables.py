@@ -28,6 +28,7 @@ KINDS = (
     "xlmc_correlation_matrix",
     "xlmc_scenarios",
     "xlmc_solve",
+    "xlmc_decisions",
     "xlmc_settings",
     CONVERTED,
 )

@@ -1,0 +1,71 @@
+"""`xlmc decide`."""
+
+from __future__ import annotations
+
+import json
+
+import openpyxl
+import pytest
+from workbook_files import workbook_of
+
+
+@pytest.fixture
+def book(tmp_path):
+    sheets = {
+        "Inputs": [
+            ["Name", "Value", "Low", "High"],
+            ["Demand", 50, 0, 100],
+            [],
+            ["What", "Value"],
+            ["Order", 50],
+            ["Price", 5],
+        ],
+        "Model": [["Name", "Value", "Units"], ["Profit", "=Inputs!B6*MIN(Inputs!B5,Inputs!B2)-3*Inputs!B5", "$"]],
+        "Decisions": [
+            ["Name", "Cell", "Low", "High", "Step", "Values"],
+            ["Order", "=Inputs!B5", 20, 60, 10, None],
+            ["Price", "=Inputs!B6", None, None, None, "5; 6"],
+        ],
+    }
+    tables = {
+        "xlmc_assumptions": "Inputs!A1:D2",
+        "xlmc_forecasts": "Model!A1:C2",
+        "xlmc_decisions": "Decisions!A1:F3",
+    }
+    path = tmp_path / "newsvendor.xlsx"
+    workbook_of(sheets, tables).save(path)
+    return path
+
+
+def test_the_terminal_says_which_is_best_and_by_how_much(xlmc, book):
+    outcome = xlmc("decide", book, "-n", "20000", "--table", "Order", "--quiet")
+    assert outcome.code == 0, outcome.err
+    words = " ".join(outcome.out.split())
+    assert "5 combinations of Order, 20,000 trials each, seed 999." in words
+    assert "with Order = 40; that is" in words
+    assert "these trials cannot tell the two apart" in words  # 20 and 60 are equally bad
+
+
+def test_files_have_the_table_and_the_trend(xlmc, book, tmp_path):
+    sheet, page, found = tmp_path / "found.xlsx", tmp_path / "found.html", tmp_path / "found.json"
+    given = ["decide", book, "-n", "2000", "--quiet"]
+    outcome = xlmc(*given, "-o", sheet, "-o", page, "-o", found)
+    assert outcome.code == 0, outcome.err
+    made = openpyxl.load_workbook(sheet)["Decisions"]
+    texts = [str(cell) for row in made.iter_rows(values_only=True) for cell in row]
+    assert "Order = 20, Price = 6" in texts
+    (chart,) = made._charts
+    assert len(chart.series) == 2  # a line for each price
+    assert "Order = 20, Price = 6" in page.read_text(encoding="utf-8")
+    written = json.loads(found.read_text(encoding="utf-8"))
+    assert written.pop("seal")
+    assert written == json.loads(xlmc(*given, "--json").out)
+    assert [each["values"] for each in written["combinations"][:2]] == [[20, 5], [20, 6]]
+    assert written["combinations"][0]["forecasts"][0]["mean"]["difference"]["value"] is not None
+    assert written["as_it_is"]["name"] is None
+
+
+def test_a_book_without_decisions_is_refused_with_the_cure(xlmc, case_study):
+    outcome = xlmc("decide", case_study)
+    assert outcome.code == 2
+    assert "xlmc_decisions" in outcome.err

@@ -1,0 +1,212 @@
+"""`xlmc decide`: the answers for every combination of decisions, over the same random numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from xlmc.cli.blocks import show
+from xlmc.cli.options import WholeNumber, engine_option, jobs_option
+from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
+from xlmc.cli.terminal import say_json
+from xlmc.cli.writing import write_files
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.decisions import Decided
+    from xlmc.outputs.document.parts import Block, Figure, Table
+    from xlmc.outputs.study_report import StudyReport
+
+__all__ = ["decide"]
+
+NOT_TO_BE_USED = 1
+
+_MOST_LINES = 6
+
+
+@click.command()
+@click.argument("book", type=click.Path(path_type=Path))
+@click.option(
+    "--table",
+    multiple=True,
+    metavar="DECISION",
+    help="Vary these decisions, three at most: names joined by commas, * for any letters; may be given several times."
+    "  [default: all]",
+)
+@click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the book's, else 200000]")
+@click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the book's, else 999]")
+@engine_option
+@jobs_option
+@study_options(STUDY_OF_A_RUN)
+@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+def decide(
+    book: Path,
+    table: tuple[str, ...],
+    trials: int | None,
+    seed: int | None,
+    engine: str | None,
+    jobs: int,
+    output: tuple[Path, ...],
+    also: tuple[Path, ...],
+    overwrite: bool,
+    as_json: bool,
+    quiet: bool,
+) -> None:
+    """Tell the answers of BOOK for every combination of its decisions, over the same random numbers."""
+    from xlmc.analysis.studies import decisions as study
+    from xlmc.cli.printing import warnings
+    from xlmc.cli.progress_bar import step_line
+    from xlmc.montecarlo.model.loading import load
+    from xlmc.outputs.document.parts import blocks_of
+    from xlmc.outputs.study_report import Files
+
+    model = load(book)
+    files = Files((*output, *also), [book], overwrite=overwrite, of_run=True)
+    files.check()
+    with step_line(quiet) as tell:
+        found = study.decide(model, table, trials=trials, seed=seed, engine=engine, jobs=jobs, tell=tell)
+    report = _report(found)
+    written = write_files(files.writers(report))
+    if as_json:
+        say_json(report.as_json())
+    else:
+        show(blocks_of([f"{report.below}.", *report.blocks]))
+        written.print_paths()
+    doubts = [*found.run.warnings, *_doubts(found)]
+    warnings(doubts, found.run.refused)
+    written.check()
+    if doubts:
+        raise click.exceptions.Exit(NOT_TO_BE_USED)
+
+
+def _doubts(found: Decided) -> list[str]:
+    """Return why the answers of combinations must not be used."""
+    doubts = [f"{each.answers.name}: {warning}" for each in found.combinations for warning in each.answers.warnings]
+    return [
+        *doubts,
+        *(f"{_values_text(found, values)}: not possible: {why}" for values, why in found.impossible.items()),
+    ]
+
+
+def _values_text(found: Decided, values: tuple[float, ...]) -> str:
+    from xlmc.montecarlo.statistics.number_text import exact_text
+
+    return ", ".join(f"{each.name} = {exact_text(at)}" for each, at in zip(found.decisions, values, strict=True))
+
+
+def _report(found: Decided) -> StudyReport:
+    from xlmc.outputs.document.parts import blocks_of
+    from xlmc.outputs.study_report import StudyReport
+
+    run, count = found.run, len(found.combinations) + len(found.impossible)
+    below = (
+        f"{run.model.workbook.name}: {count:,} combination{'s' * (count != 1)} of "
+        f"{', '.join(each.name for each in found.decisions)}, {run.trials:,} trials each, seed {run.settings.seed}"
+    )
+    blocks = blocks_of([*_sentences(found), *_blocks(found), _MEANING])
+    title = "What each decision gives"
+    return StudyReport(title, below, blocks, "Decisions", partial(_as_json, found), run)
+
+
+_MEANING = (
+    "Each combination is run over the same random numbers, so that differences come from the decisions, and their ± "
+    "from the differences trial by trial. Difference: to the workbook as it is. ± is the standard error "
+    "(Monte Carlo error)."
+)
+
+
+def _sentences(found: Decided) -> Iterator[str]:
+    from xlmc.analysis.studies.decisions import of_forecast
+
+    for forecast in found.run.model.forecasts:
+        for least, word in ((False, "largest"), (True, "smallest")):
+            best = found.best(forecast.name, least=least)
+            if best is None:
+                yield f"{forecast.name} is a number with none of them."
+                break
+            form = of_forecast(found.base, forecast.name).form
+            units = f" {forecast.units}" if forecast.units else ""
+            mean = f"{form.estimate(best.mean)}{units}"
+            text = f"The mean of {forecast.name} is {word}, {mean}, with {best.combination.answers.name}"
+            if best.next is None or best.ahead is None:
+                yield f"{text}."
+                break
+            side = "below" if least else "above"
+            ahead = form.spread(best.ahead).lstrip("-")
+            doubt = "" if best.is_sure else ", and these trials cannot tell the two apart"
+            yield f"{text}; that is {ahead} {side} the next, {best.next.answers.name}{doubt}."
+
+
+def _blocks(found: Decided) -> Iterator[Block]:
+    for index in range(len(found.base.forecasts)):
+        yield _table(found, index)
+        if len(found.decisions) < 3:
+            figure = _trend(found, index)
+            if figure is not None:
+                yield figure
+
+
+def _table(found: Decided, index: int) -> Table:
+    from xlmc.outputs.document.parts import Table
+    from xlmc.outputs.scenario_tables import answer_heads, answer_rows
+
+    answers = [found.base, *(each.answers for each in found.combinations)]
+    heads = ["Decision", *answer_heads(answers, index)[1:]]
+    rows = tuple(answer_rows(answers, index))
+    return Table(answers[0].forecasts[index].title, tuple(heads), rows, tuple(range(1, len(heads))))
+
+
+def _trend(found: Decided, index: int) -> Figure | None:
+    """Draw the means over the values of the first decision: of two a line for each value of the second."""
+    from xlmc.montecarlo.statistics.number_text import exact_text
+    from xlmc.outputs.document.parts import Chart, Figure, Line, Lines
+
+    first, *others = found.decisions
+    answer = found.base.forecasts[index]
+    points = [(each.values, each.answers.forecasts[index]) for each in found.combinations]
+    if len(first.values) < 2 or len(points) < 2:
+        return None
+    if others:
+        (second,) = others
+        lines = [
+            (f"{second.name} = {exact_text(at)}", [(v[0], a.mean.value, a.mean.error) for v, a in points if v[1] == at])
+            for at in second.values[:_MOST_LINES]
+        ]
+    else:
+        ends = ("low", "high") if answer.has_range else ()
+        lines = [("Mean", [(v[0], a.mean.value, a.mean.error) for v, a in points])]
+        lines += [
+            (f"Central range, {end} end", [(v[0], getattr(a, end).value, None) for v, a in points]) for end in ends
+        ]
+    drawn = tuple(
+        Line(name, tuple(sorted(each for each in those if each[1] == each[1])))
+        for name, those in lines  # no NaN
+    )
+    drawn = tuple(line for line in drawn if len(line.points) > 1)
+    if not drawn:
+        return None
+    across = f"{first.name}, {first.units}" if first.units else first.name
+    said = f"{answer.forecast.name} for the values of {' and '.join(each.name for each in found.decisions)}"
+    return Figure(Chart("", across, Lines(drawn, answer.title, dots=True), said), said)
+
+
+def _as_json(found: Decided) -> dict[str, object]:
+    from xlmc.outputs.json_document import scenario_json
+
+    run = found.run
+    return {
+        "book": str(run.model.path),
+        "trials": run.trials,
+        "seed": run.settings.seed,
+        "decisions": [
+            {"name": each.name, "cell": str(each.cell), "units": each.units, "values": each.values}
+            for each in found.decisions
+        ],
+        "as_it_is": scenario_json(found.base),
+        "combinations": [{"values": each.values, **scenario_json(each.answers)} for each in found.combinations],
+        "impossible": [{"values": values, "why": why} for values, why in found.impossible.items()],
+    }

@@ -1,0 +1,102 @@
+"""The rows of `xlmc_decisions`: cells that a person decides on, and the values that are tried."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from typing import Final
+
+import numpy as np
+
+from xlmc.errors import DefinitionError
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions.computed import Computed
+from xlmc.montecarlo.definitions.definitions import Decision
+from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.definitions.tables.identity import Claims, identify
+from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
+from xlmc.montecarlo.definitions.tables.table_rows import Row, number, optional_text, rows_of
+from xlmc.montecarlo.distributions.parameters import show
+
+__all__ = ["read_decisions"]
+
+_KNOWN = ("Name", "Value", "Cell", "Low", "High", "Step", "Values", "Units")
+_BY_RANGE = ("Low", "High", "Step")
+
+_STEPS: Final = 4
+"""Steps from Low to High where Step is blank."""
+
+_MOST_VALUES: Final = 1_000
+_SLACK: Final = 1e-9
+"""The part of a step by which High may be missed: .1 ten times is a little less than 1."""
+
+
+def read_decisions(
+    workbook: Workbook, tables: Iterable[DefinitionTable], computed: Computed, findings: Findings
+) -> tuple[Decision, ...]:
+    """Return the rows without a mistake, in their order.
+
+    Args:
+        workbook: where they are read.
+        tables: the tables that hold them.
+        computed: which cells something gives a value; a decision's must have none.
+        findings: takes mistakes and remarks.
+    """
+    claims = Claims("decision")
+    rows = rows_of(workbook, tables, ("Name",), _KNOWN, findings)
+    return tuple(filter(None, (_decision(row, computed, claims, findings) for row in rows)))
+
+
+def _decision(row: Row, computed: Computed, claims: Claims, findings: Findings) -> Decision | None:
+    before = len(findings.problems)
+    identity = identify(row, claims, findings)
+    if identity is not None and computed.at_all(identity[1]):
+        what = "a formula, an assumption or a cell that is solved for"
+        message = f"The cell of the decision {identity[0]!r}, {identity[1]}, is {what}"
+        findings.problem(message, row.where, "Decide on a cell that holds a number")
+    values = findings.attempt(_values, row)
+    units = findings.attempt(optional_text, row, "Units") or ""
+    if len(findings.problems) > before or identity is None or values is None:
+        return None
+    return Decision(*identity, values, row.where, units)
+
+
+def _values(row: Row) -> tuple[float, ...]:
+    """Return the values that a row says.
+
+    Raises:
+        DefinitionError: it says none, or in two ways.
+    """
+    filled = [heading for heading in _BY_RANGE if row.filled(heading)]
+    if row.filled("Values"):
+        if filled:
+            message = f"{row.heading('Values')} and {row.heading(filled[0])} are both given"
+            raise DefinitionError(message, where=row.cell(filled[0]), hint="Clear one of them")
+        return _listed(row)
+    low, high, step = (number(row, heading) for heading in _BY_RANGE)
+    if low is None or high is None:
+        message = "The decision has no values"
+        raise DefinitionError(message, where=row.where, hint="Fill in Low and High, or Values such as 10; 20; 50")
+    step = (high - low) / _STEPS if step is None else step
+    if not low < high or not step > 0.0:
+        message = f"From {show(low)} to {show(high)} in steps of {show(step)} there are no values"
+        raise DefinitionError(message, where=row.cell("Low"), hint="Give Low below High, and Step above 0")
+    count = math.floor((high - low) / step + _SLACK) + 1
+    if count > _MOST_VALUES:
+        where = row.cell("Step") if row.filled("Step") else row.where
+        raise DefinitionError(
+            f"{count:,} values are more than {_MOST_VALUES:,}", where=where, hint="Give a larger Step"
+        )
+    return tuple(np.minimum(low + step * np.arange(count), high).tolist())
+
+
+def _listed(row: Row) -> tuple[float, ...]:
+    parts = [part.strip() for part in optional_text(row, "Values").split(";")]
+    try:
+        found = tuple(dict.fromkeys(float(part) for part in parts if part))
+    except ValueError:
+        found = ()
+    if not found or not all(map(math.isfinite, found)):
+        message = f"{row.heading('Values')} holds no list of numbers"
+        raise DefinitionError(message, where=row.cell("Values"), hint="Separate the numbers by semicolons: 10; 20; 50")
+    return found

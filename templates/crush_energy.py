@@ -730,7 +730,7 @@ TEMPLATE = Template(
             at_most=1.5,
         ),
         FilterRow(
-            "Stiffness above 0", "least_stiff", "A vehicle that is crushed resists. Without tests: no effect", above=0
+            "Least stiffness", "least_stiff", "A vehicle that is crushed resists. Without tests: no effect", above=0
         ),
     ),
     evidence=(

@@ -15,6 +15,7 @@ from templates.editions import Both
 __all__ = [
     "ALL_CHECKS",
     "PARAMETER_COLUMNS",
+    "RULE_OF_TYRES",
     "CorrelationRow",
     "Curve",
     "Diagram",
@@ -34,6 +35,9 @@ __all__ = [
 
 ALL_CHECKS = "checks_hold"
 """Symbol of the TRUE/FALSE equation, in every template, that says whether each physics check holds."""
+
+RULE_OF_TYRES = "tyres_matter"
+"""Symbol of the text, in impact templates, that says that the tyres' impulse is no longer small; or a dash."""
 
 PARAMETER_COLUMNS = (
     "Low",

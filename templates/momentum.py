@@ -12,7 +12,7 @@ from templates.two_vehicles.drawing import rest_points, vehicle_curves
 from templates.two_vehicles.equations import DELTA_V, IMPACT_SPEEDS, MASSES, RUN_OUT
 from templates.two_vehicles.options import (
     drawing_inputs,
-    duration_input,
+    duration_inputs,
     duration_section,
     turn_filters,
     turn_inputs,
@@ -140,7 +140,7 @@ def describe(scene: Scene) -> Template:
         needs="weights, approach and departure angles, run-out, friction",
         assumptions=assumptions_of_momentum(scene),
         constants=(*((SWITCH,) if more else ()), *constants_of_momentum()),
-        optional=(duration_input(), *turn_inputs(), *drawing_inputs()),
+        optional=(*duration_inputs(), *turn_inputs(), *drawing_inputs()),
         sections=leave_together(_sections(more=True)) if more else _sections(more=False),
         forecasts=paper_forecasts() + direction_forecasts(yaw=False, near=more) + (run_out_forecasts() if more else ()),
         filters=(*_filters(scene), *turn_filters()),

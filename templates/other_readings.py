@@ -33,5 +33,8 @@ def recorded_delta_v(name: str, symbol: str) -> EvidenceRow:
 
 def cut_off_delta_v(name: str, symbol: str) -> EvidenceRow:
     """The delta-V of a recorder that stopped, or was clipped, before the pulse had ended."""
-    source = f"The record ended, or was clipped, before the pulse did: what was recorded is a lower limit. {_RULE}"
+    source = (
+        "The record ended, or its sensor was clipped, before the pulse had ended: what was recorded is a lower limit. "
+        f"{_RULE}. Or clear both and enter a Std dev: a normal error"
+    )
     return EvidenceRow(f"{name} in its EDR, cut off", symbol, None, "At least", _OFF_BY, source)

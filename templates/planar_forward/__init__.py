@@ -25,7 +25,7 @@ from templates.restitution import restitution_input
 from templates.two_vehicles.answers import APPROACH, DELTA_V_ANSWER, FORCE, ROTATION
 from templates.two_vehicles.checks import CLOSING, ENERGY, FRICTION
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
-from templates.two_vehicles.options import drawing_inputs, duration_input, duration_section
+from templates.two_vehicles.options import drawing_inputs, duration_inputs, duration_section
 from templates.two_vehicles.results import shared_road_note
 from templates.two_vehicles.scene import Scene, assumptions_of_planar_forward, constants_of_momentum, yaw_rates
 from templates.units import MPH
@@ -150,7 +150,7 @@ def describe(scene: Scene) -> Template:
         needs="impact speeds, headings, restitution, inertias, impact centre",
         assumptions=(*given, *_CLOSURES),
         constants=(_CLOSURE, *yaw_rates(), *constants_of_momentum(inches=True)),
-        optional=(duration_input(), *drawing_inputs()),
+        optional=(*duration_inputs(), *drawing_inputs()),
         sections=(
             *model_sections(),
             Section("5  Answers (the forecasts)", for_both((DELTA_V_ANSWER, *_FURTHER))),

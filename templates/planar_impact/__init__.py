@@ -10,7 +10,7 @@ from templates.planar_impact.evaluate import evaluate
 from templates.planar_impact.guide import guide
 from templates.restitution_curve import curve_evidence, curve_inputs
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
-from templates.two_vehicles.options import drawing_inputs, duration_input, turn_filters, turn_inputs
+from templates.two_vehicles.options import drawing_inputs, duration_inputs, turn_filters, turn_inputs
 from templates.two_vehicles.readings import lever_inputs, readings, rotation_inputs
 from templates.two_vehicles.results import direction_forecasts, paper_forecasts, shared_road, shared_road_note
 from templates.two_vehicles.run_out import RUN_OUT_NOTE, run_out_forecasts, run_out_inputs
@@ -42,7 +42,7 @@ def describe(scene: Scene) -> Template:
         assumptions=assumptions_of_planar_impact(scene),
         constants=(*((SWITCH,) if more else ()), *yaw_rates(), *constants_of_momentum(inches=True)),
         optional=(
-            duration_input(),
+            *duration_inputs(),
             *((*turn_inputs(), *lever_inputs(), *rotation_inputs(), *curve_inputs()) if more else ()),
             *drawing_inputs(),
         ),

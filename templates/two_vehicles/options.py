@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from templates.description import Equation, FilterRow, Input, Section
+from templates.description import RULE_OF_TYRES, Equation, FilterRow, Input, Section
 from templates.editions import Both
 from templates.units import MPH
 from templates.vehicles import for_both, vehicle
 
-__all__ = ["drawing_inputs", "duration_input", "duration_section", "turn_filters", "turn_inputs", "turn_section"]
+__all__ = ["drawing_inputs", "duration_inputs", "duration_section", "turn_filters", "turn_inputs", "turn_section"]
 
 _DURATION = (
     Equation(
@@ -42,6 +42,32 @@ _DURATION = (
     ),
 )
 
+_JUDGED = Equation(
+    "t_judged",
+    "Δtj",
+    "Duration by which the tyre impulse is judged",
+    "s",
+    "IF(t_impact>0,t_impact,t_otherwise)",
+    "input",
+    number_format="0.000",
+)
+
+_MOST = (
+    "MAX(" + ",".join(f"IF([w|m]_{j}<100*[w|m]_{k},100*f_{j}*g*t_judged/dV_{j},0)" for j, k in ((1, 2), (2, 1))) + ")"
+)
+
+_RULE = Equation(
+    RULE_OF_TYRES,
+    "",
+    "Tyre impulse neglected, judged by the rule of 10 %",
+    "",
+    f'IF({_MOST}>10,"Tyre forces neglected may be "&TEXT({_MOST},"0")&" % of an impulse in "&TEXT(t_judged,"0.00")&'
+    '" s: above 10 % use a model that keeps them","–")',
+    "assumption 1 of the paper",
+    "Of the vehicle that it is most of; a wall, 100 times as heavy, has no tyres. Sheet Inputs says so, too.",
+    number_format="General",
+)
+
 _TURN = (
     Equation(
         "a_lat_{j}",
@@ -56,15 +82,22 @@ _TURN = (
 )
 
 
-def duration_input() -> Input:
-    """The impact's duration, blank."""
+def duration_inputs() -> tuple[Input, ...]:
+    """The impact's duration, blank, and the one that the tyre impulse is judged by meanwhile."""
     source = "Optional. 0.1 s, say. Gives the mean acceleration and the tyre impulse neglected"
-    return Input("t_impact", "Δt", "Impact duration", "s", None, source, number_format="0.000")
+    judged = (
+        "Used only to judge the tyre impulse where no duration is entered. It amounts to about [1.8 mph|2.8 km/h] in "
+        "each 0.1 s of contact at a friction of 0.8: f·g·Δt"
+    )
+    return (
+        Input("t_impact", "Δt", "Impact duration", "s", None, source, number_format="0.000"),
+        Input("t_otherwise", "Δt0", "The same, where it is blank", "s", 0.1, judged, number_format="0.000"),
+    )
 
 
 def duration_section(number: int) -> Section:
     """Mean acceleration, and the tyre impulse that the model neglects."""
-    return Section(f"{number}  Optional: duration of the impact", for_both(_DURATION))
+    return Section(f"{number}  Optional: duration of the impact", (*for_both(_DURATION), _JUDGED, _RULE))
 
 
 def turn_inputs() -> tuple[Input, ...]:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from xlsxwriter.worksheet import Worksheet
 
-from templates.description import ALL_CHECKS, PARAMETER_COLUMNS, Input, Template
+from templates.description import ALL_CHECKS, PARAMETER_COLUMNS, RULE_OF_TYRES, Input, Template
 from templates.vehicles import name_cell
 from templates.writer.cached import Values
 from templates.writer.page import (
@@ -37,7 +37,7 @@ _FROZEN = len(_HEADERS) - 2
 def draw_inputs(sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values) -> None:
     """Write the sheet; `values` are what the formulas give at the base case."""
     begin_sheet(sheet, styles, template.title, template.subtitle, _WIDTHS)
-    _draw_status(sheet, styles, values)
+    _draw_status(sheet, styles, template, values)
     _draw_vehicles(sheet, styles, template)
     _draw_table(sheet, styles, "xlmc_assumptions", template.assumptions, at, values)
     _draw_fixed(sheet, styles, "Held fixed", template.constants, at, values)
@@ -72,9 +72,11 @@ def _fold_columns(sheet: Worksheet) -> None:
     sheet.set_column(_FROZEN, _FROZEN, _WIDTHS[_FROZEN], None, {"collapsed": True})
 
 
-def _draw_status(sheet: Worksheet, styles: Styles, values: Values) -> None:
+def _draw_status(sheet: Worksheet, styles: Styles, template: Template, values: Values) -> None:
     good, bad = "All physics checks hold at the base case", "A physics check fails at the base case: see sheet Model"
     formula = f'IF(IFERROR({ALL_CHECKS},FALSE),"{good}","{bad}")'
+    if RULE_OF_TYRES in {equation.symbol for equation in template.equations}:
+        formula += f'&IF(IFERROR({RULE_OF_TYRES},"–")="–","",". "&{RULE_OF_TYRES})'
     write_formula(sheet, 2, 0, formula, styles("status"), values)
     guard(sheet, (2, 0, 2, 0), "A formula", "This line tells whether the checks of sheet Model hold.", final=True)
     rule = {"type": "formula", "criteria": f"=NOT(IFERROR({ALL_CHECKS},FALSE))", "format": styles("wrong")}

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
         uncertainty,
         verify,
     )
+    from xlmc.excel.own_functions import scalar
     from xlmc.montecarlo.definitions.distribution import (
         Beta,
         BetaPERT,
@@ -82,6 +83,7 @@ __all__ = [
     "model",
     "open_run",
     "replay",
+    "scalar",
     "screen",
     "seek",
     "sensitivities",
@@ -121,6 +123,7 @@ _MODULES = {
     "open_run": "api",
     "replay": "api",
     "screen": "api",
+    "scalar": "excel.own_functions",
     "seek": "api",
     "sensitivities": "api",
     "stability": "api",

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from xlmc.api.models import functions_of
 from xlmc.errors import DefinitionError, XlmcError
 from xlmc.montecarlo.model import loading
 
@@ -17,8 +18,12 @@ if TYPE_CHECKING:
 __all__ = ["check", "convert", "replay", "seek", "verify"]
 
 
-def check(path: str | Path) -> tuple[XlmcError, ...]:
+def check(path: str | Path, *, functions: str | Path | None = None) -> tuple[XlmcError, ...]:
     """Return every problem of a workbook, each with its cell: what keeps it from being run, and impossible scenarios.
+
+    Args:
+        path: of the workbook.
+        functions: a file of Python, which is run: its functions compute what formulas call by their names.
 
     Raises:
         WorkbookError: the file cannot be read.
@@ -29,11 +34,12 @@ def check(path: str | Path) -> tuple[XlmcError, ...]:
     from xlmc.montecarlo.definitions.definitions_reader import read_definitions
     from xlmc.montecarlo.model.labels import calculate_labels
 
-    problems = read_definitions(calculate_labels(read_workbook(path)), ENGINES).problems
+    own = functions_of(functions)
+    problems = read_definitions(calculate_labels(read_workbook(path, functions=own)), ENGINES).problems
     if problems:
         return problems
     try:
-        return tuple(scenario_faults(loading.load(path)).values())
+        return tuple(scenario_faults(loading.load(path, functions=own)).values())
     except XlmcError as error:
         return (error,)
 
@@ -62,12 +68,13 @@ def seek(
     return seek(path, cell, to, by, low=low, high=high)
 
 
-def verify(path: str | Path, *, everything: bool = False) -> Verification:
+def verify(path: str | Path, *, everything: bool = False, functions: str | Path | None = None) -> Verification:
     """Compute the formulas of a workbook again at the base case, and compare with the values that Excel saved.
 
     Args:
         path: of the workbook.
         everything: every formula cell, not only those that forecasts and filters need.
+        functions: as for `check`.
 
     Raises:
         WorkbookError: the file cannot be read.
@@ -79,7 +86,7 @@ def verify(path: str | Path, *, everything: bool = False) -> Verification:
     from xlmc.montecarlo.definitions.definitions_reader import read_definitions
     from xlmc.montecarlo.model.labels import calculate_labels
 
-    workbook = read_workbook(path)
+    workbook = read_workbook(path, functions=functions_of(functions))
     if everything:
         return verify(workbook)
     definitions = read_definitions(calculate_labels(workbook), ENGINES)
@@ -89,13 +96,16 @@ def verify(path: str | Path, *, everything: bool = False) -> Verification:
     return verify(workbook, definitions)
 
 
-def replay(path: str | Path, *, jobs: int = 1, model: Model | None = None) -> Replayed:
+def replay(
+    path: str | Path, *, jobs: int = 1, model: Model | None = None, functions: str | Path | None = None
+) -> Replayed:
     """Repeat the run that a result workbook or a saved run records, and say whether it is identical.
 
     Args:
         path: a result workbook, or a saved run.
         jobs: threads or processes.
         model: of `xlmc.model`, where a function of Python computed the run.
+        functions: the file of Python whose functions the run's formulas called: it must be the same.
 
     Raises:
         WorkbookError: the file cannot be read, or holds no record.
@@ -103,10 +113,11 @@ def replay(path: str | Path, *, jobs: int = 1, model: Model | None = None) -> Re
     """
     from xlmc.outputs.replay import replay
 
-    return replay(path, jobs=jobs, python=None if model is None else model._compiled.definitions.python)
+    python = None if model is None else model._compiled.definitions.python
+    return replay(path, jobs=jobs, python=python, functions=functions_of(functions))
 
 
-def convert(path: str | Path, to: str | Path, *, overwrite: bool = False) -> Path:
+def convert(path: str | Path, to: str | Path, *, overwrite: bool = False, functions: str | Path | None = None) -> Path:
     """Write a copy of a workbook of Crystal Ball or @RISK with its definitions as tables, and give the path back.
 
     Raises:
@@ -115,5 +126,5 @@ def convert(path: str | Path, to: str | Path, *, overwrite: bool = False) -> Pat
     """
     from xlmc.outputs.conversion.convert import convert
 
-    convert(loading.load(path), Path(to), overwrite=overwrite)
+    convert(loading.load(path, functions=functions_of(functions)), Path(to), overwrite=overwrite)
     return Path(to)

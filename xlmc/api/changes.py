@@ -58,6 +58,8 @@ def run_of_a_file(run: RunResult, changes: Changes | None) -> RunResult:
     if changes.own.definitions.feeding is not None:
         hint = "Type the changes into the workbooks first, and run these"
         raise SimulationError("no file holds the workbooks of this run with their changes", hint=hint)
-    book = read_workbook(edited_workbook(changes.own, changes.scenario).data, changes.own.workbook.name)
+    book = read_workbook(
+        edited_workbook(changes.own, changes.scenario).data, changes.own.workbook.name, changes.own.workbook.functions
+    )
     model = build_model(book, changes.own.path, python=changes.own.definitions.python)
     return replace(run, model=model.changed(book, replace(model.definitions, settings=run.model.definitions.settings)))

@@ -22,6 +22,7 @@ from xlmc.montecarlo.definitions.run_options import RunArguments, RunOptions
 from xlmc.montecarlo.model import loading
 
 if TYPE_CHECKING:
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.definitions import Assumption, Check, Filter, Forecast
     from xlmc.montecarlo.definitions.evidence import Evidence
@@ -306,7 +307,7 @@ class Model:
         return Simulation(run if self._changes is None else self._changes.named_in(run), self._changes)
 
 
-def load(path: str | Path, *, feeds: Mapping[str, str] | None = None) -> Model:
+def load(path: str | Path, *, feeds: Mapping[str, str] | None = None, functions: str | Path | None = None) -> Model:
     """Read a workbook and compile what its forecasts and filters need.
 
     Args:
@@ -315,6 +316,7 @@ def load(path: str | Path, *, feeds: Mapping[str, str] | None = None) -> Model:
             `{"Vehicle speed at the impact": "momentum.xlsx!Vehicle 1 impact speed"}`. The filters of both hold, and
             assumptions of one name are drawn once. An assumption of such a workbook may be fed in turn, as
             `"momentum.xlsx!Name"`.
+        functions: a file of Python, which is run: its functions compute what formulas call by their names.
 
     Raises:
         WorkbookError: a file cannot be read.
@@ -324,7 +326,7 @@ def load(path: str | Path, *, feeds: Mapping[str, str] | None = None) -> Model:
     """
     from xlmc.montecarlo.definitions.feeds import read_feeds
 
-    return Model(loading.load(path, read_feeds(feeds or {})))
+    return Model(loading.load(path, read_feeds(feeds or {}), functions_of(functions)))
 
 
 def model(
@@ -362,13 +364,25 @@ def model(
     return Model(function_model(function, assumptions, forecasts, filters, correlations=correlations, name=name))
 
 
-def open_run(path: str | Path, model: Model | None = None) -> Simulation:
+def functions_of(path: str | Path | None) -> OwnFunctions | None:
+    """Return the functions of a file; None for no file.
+
+    Raises:
+        WorkbookError: the file cannot be read or run, or defines none.
+    """
+    from xlmc.excel.own_functions import load_functions
+
+    return None if path is None else load_functions(path)
+
+
+def open_run(path: str | Path, model: Model | None = None, *, functions: str | Path | None = None) -> Simulation:
     """Return the run that `Simulation.keep` saved in a file: every statistic is the same to the last bit.
 
     Args:
         path: of the file.
         model: of `xlmc.model`, where a function of Python computed the run, which no file holds; changes of the model
             stand in the file.
+        functions: the file of Python whose functions the run's formulas called: it must be the same.
 
     Raises:
         SimulationError: the model is of another function than the run.
@@ -377,7 +391,7 @@ def open_run(path: str | Path, model: Model | None = None) -> Simulation:
     """
     from xlmc.analysis.results.saved import open_run, refuse_other_function
 
-    run = open_run(path, None if model is None else model._compiled.definitions.python)
+    run = open_run(path, None if model is None else model._compiled.definitions.python, functions_of(functions))
     if model is not None:
         refuse_other_function(run, path)
     return Simulation(run)

@@ -11,12 +11,13 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from xlmc.cli.options import FilePath
+from xlmc.cli.options import FilePath, functions_option
 from xlmc.cli.terminal import paragraph, plain, put, say, say_json
 
 if TYPE_CHECKING:
     from xlmc.engine.calculation import Calculation
     from xlmc.excel.address import Cell
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.excel.workbook.typed_values import ValueRows
     from xlmc.excel.workbook.workbook import CellValue, Workbook
 
@@ -51,6 +52,7 @@ _MOST_TOLD: Final = 12
 @click.option("--json", "as_json", is_flag=True, help="Print the cells as JSON.")
 @click.option("--csv", "as_csv", is_flag=True, help="Print the cells as CSV.")
 @click.option("--overwrite", is_flag=True, help="Replace existing files, whoever wrote them.")
+@functions_option
 def calculate(
     book: Path,
     outputs: tuple[Path, ...],
@@ -61,6 +63,7 @@ def calculate(
     as_json: bool,
     as_csv: bool,
     overwrite: bool,
+    functions: OwnFunctions | None,
 ) -> None:
     """Compute all formulas of BOOK and save the values in a copy, by default BOOK-calculated.xlsx.
 
@@ -76,7 +79,7 @@ def calculate(
         raise click.UsageError("--json and --csv cannot both be given.")
     if (as_json or as_csv) and not cells:
         raise click.UsageError("which cells are to be printed? Name them: --cells Results!B2:B9")
-    workbook = read_workbook(book)
+    workbook = read_workbook(book, functions=functions)
     wanted = _wanted(workbook, cells)
     typed = _typed(typed_change(workbook, each) for each in changes)
     table = None if values is None else read_value_rows(values, workbook)

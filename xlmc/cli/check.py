@@ -11,11 +11,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath
+from xlmc.cli.options import FilePath, functions_option
 from xlmc.cli.terminal import paragraph, say
 from xlmc.errors import sentence
 
 if TYPE_CHECKING:
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.definitions import Assumption, Correlation, Definitions, Forecast
     from xlmc.montecarlo.diagnostics.cell_errors import BaseErrors
@@ -31,7 +32,11 @@ _MOST_CELLS = 12
 
 @click.command()
 @click.argument("book", type=FilePath())
-def check(book: Path) -> None:
+@functions_option
+def check(
+    book: Path,
+    functions: OwnFunctions | None,
+) -> None:
     """Show the assumptions, forecasts and filters of BOOK as xlmc understands them, and every problem with its cell.
 
     Checks that fail at the base case, and cells that are errors there, come first.
@@ -47,7 +52,7 @@ def check(book: Path) -> None:
     from xlmc.montecarlo.model.loading import filter_faults
     from xlmc.montecarlo.model.model import CompiledModel
 
-    workbook = calculate_labels(read_workbook(book))
+    workbook = calculate_labels(read_workbook(book, functions=functions))
     definitions = read_definitions(workbook, ENGINES)
     problems: list[XlmcError] = list(definitions.problems)
     model: CompiledModel | None = None

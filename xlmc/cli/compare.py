@@ -12,7 +12,15 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import FilePath, WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
+from xlmc.cli.options import (
+    FilePath,
+    WholeNumber,
+    chance_option,
+    engine_option,
+    functions_option,
+    jobs_option,
+    tolerance_option,
+)
 from xlmc.cli.study_output import STUDY, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
@@ -20,6 +28,7 @@ from xlmc.cli.writing import write_files
 if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison import Comparison, ForecastComparison
     from xlmc.analysis.studies.comparison.causes import Step
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["compare"]
@@ -47,6 +56,7 @@ UNDECIDED = 1
 @study_options(STUDY)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@functions_option
 def compare(
     first: Path,
     second: Path,
@@ -64,6 +74,7 @@ def compare(
     overwrite: bool,
     as_json: bool,
     quiet: bool,
+    functions: OwnFunctions | None,
 ) -> None:
     """Run the workbooks FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
     from xlmc.analysis.studies import comparison
@@ -75,7 +86,7 @@ def compare(
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
-    books = load(first), load(second)
+    books = load(first, functions=functions), load(second, functions=functions)
     files = Files((*output, *also), [first, second], overwrite=overwrite)
     files.check()
     with step_line(quiet) as tell:

@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath
+from xlmc.cli.options import FilePath, functions_option
 from xlmc.cli.terminal import paragraph, say
+
+if TYPE_CHECKING:
+    from xlmc.excel.own_functions import OwnFunctions
 
 __all__ = ["convert"]
 
@@ -21,7 +25,13 @@ __all__ = ["convert"]
     help="The new workbook.  [default: BOOK-converted.xlsx]",
 )
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
-def convert(book: Path, output: Path | None, overwrite: bool) -> None:
+@functions_option
+def convert(
+    book: Path,
+    output: Path | None,
+    overwrite: bool,
+    functions: OwnFunctions | None,
+) -> None:
     """Turn what Crystal Ball's dialogs and calls in cells define in BOOK into tables, on a new sheet of a copy.
 
     The copy gives the same accepted trials as BOOK, to the last bit.
@@ -32,7 +42,7 @@ def convert(book: Path, output: Path | None, overwrite: bool) -> None:
     from xlmc.outputs.conversion.convert import convert as write
     from xlmc.outputs.sheets.save import check_ending
 
-    model = load(book)
+    model = load(book, functions=functions)
     path = output or model.path.with_name(f"{model.path.stem}-converted{copy_ending(model.path)}")
     check_ending(path, model.path)
     found = write(model, path, overwrite=overwrite)

@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import FilePath, WholeNumber
+from xlmc.cli.options import FilePath, WholeNumber, functions_option
 from xlmc.cli.study_output import study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
+
+if TYPE_CHECKING:
+    from xlmc.excel.own_functions import OwnFunctions
 
 __all__ = ["methods"]
 
@@ -47,6 +50,7 @@ NOT_TO_BE_USED = 1
 @study_options("the figure (.png), a workbook (.xlsx), a document (.pdf, .docx), a page (.html), JSON (.json)")
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@functions_option
 def methods(
     book: Path,
     accuracy: str,
@@ -60,6 +64,7 @@ def methods(
     overwrite: bool,
     as_json: bool,
     quiet: bool,
+    functions: OwnFunctions | None,
 ) -> None:
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
     from xlmc.analysis.studies.methods import quick_settings, recommendation, study
@@ -68,7 +73,7 @@ def methods(
     from xlmc.outputs.methods import in_short, methods_report
     from xlmc.outputs.study_report import Files
 
-    model = load(book)
+    model = load(book, functions=functions)
     files = Files((*output, *also), [book], overwrite=overwrite, drawn=True)
     files.check()
     asked: dict[str, Any] = {"reference_trials": reference_trials, "trials": trials, "replicates": replicates}

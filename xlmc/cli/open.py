@@ -12,11 +12,12 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.new import templates
-from xlmc.cli.options import FilePath, WholeNumber
+from xlmc.cli.options import FilePath, WholeNumber, functions_option
 from xlmc.cli.terminal import say
 from xlmc.errors import WorkbookError
 
 if TYPE_CHECKING:
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.outputs.live.library import Library
     from xlmc.outputs.live.server import LiveServer
 
@@ -30,14 +31,17 @@ _LAST_PORT = 65_535
 @click.option("--no-browser", is_flag=True, help="Print the link, and open no browser.")
 @click.option("--port", type=WholeNumber(1, _LAST_PORT), help="Port of the window.  [default: a free one]")
 @click.option("--memory", type=WholeNumber(50, None), help="MB that runs of a workbook may take.  [default: 500]")
-def open_window(book: Path | None, no_browser: bool, port: int | None, memory: int | None) -> None:
+@functions_option
+def open_window(
+    book: Path | None, no_browser: bool, port: int | None, memory: int | None, functions: OwnFunctions | None
+) -> None:
     """Open the live window on BOOK, or on the workbooks of FOLDER: move ranges, and see the answers change."""
     import webbrowser
 
     from xlmc.outputs.live.server import LiveServer, bound_socket
     from xlmc.outputs.live.session import MEMORY
 
-    library = _library(book)
+    library = _library(book, functions)
     server = LiveServer(bound_socket(port or 0), library, memory=memory or MEMORY)
     link = server.link
     say(f"The window is at {link}")
@@ -64,7 +68,7 @@ def _leading_to(link: str, folder: Path) -> str:
     return page.as_uri()
 
 
-def _library(book: Path | None) -> Library:
+def _library(book: Path | None, functions: OwnFunctions | None) -> Library:
     from xlmc.outputs.live.library import Library, Sample
     from xlmc.outputs.live.stored_scenarios import Keeper, state_folder
 
@@ -75,10 +79,10 @@ def _library(book: Path | None) -> Library:
     ]
     keeper = Keeper(state_folder())
     if book is None or os.path.isdir(book):
-        return Library(keeper, folder=book or Path.cwd(), samples=samples)
+        return Library(keeper, folder=book or Path.cwd(), samples=samples, functions=functions)
     if not os.path.exists(book):
         raise WorkbookError("there is no such file", where=book, hint="xlmc open alone shows what there is")
-    return Library(keeper, book=book, samples=samples)
+    return Library(keeper, book=book, samples=samples, functions=functions)
 
 
 def _serve(server: LiveServer) -> None:

@@ -19,6 +19,7 @@ __all__ = [
     "chance_option",
     "engine_option",
     "feed_option",
+    "functions_option",
     "jobs_option",
     "run_options",
     "tolerance_option",
@@ -113,6 +114,29 @@ feed_option = click.option(
     " may be given several times, and in a row: 'other.xlsx!C=third.xlsx!D'.",
 )
 """The option for workbooks whose answers feed assumptions."""
+
+
+class _FunctionsFile(FilePath):
+    """A file of functions, which is run."""
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> Any:
+        """Return the functions.
+
+        Raises:
+            WorkbookError: the file cannot be read or run, or defines none.
+        """
+        from xlmc.excel.own_functions import load_functions
+
+        return load_functions(super().convert(value, param, ctx))
+
+
+functions_option = click.option(
+    "--functions",
+    type=_FunctionsFile(),
+    metavar="FILE.py",
+    help="Run this file of Python, whose functions compute what formulas call by their names: code of VBA, add-ins.",
+)
+"""The option for a person's own functions."""
 
 
 def _setting_option(setting: Setting) -> Callable[[F], F]:

@@ -16,6 +16,7 @@ from xlmc.excel.workbook.package import WORKBOOKS
 
 if TYPE_CHECKING:
     from xlmc.api import Simulation
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.document import Wanted
@@ -238,6 +239,7 @@ class Outputs(NamedTuple):
         contents: what the reports are to hold.
         beside: the saved run that the page shows beside this one.
         fed_by: the workbooks whose answers feed assumptions.
+        functions: a person's own, which formulas call.
     """
 
     source: Path
@@ -249,6 +251,7 @@ class Outputs(NamedTuple):
     contents: ReportContents = ReportContents()
     beside: Path | None = None
     fed_by: tuple[Path, ...] = ()
+    functions: OwnFunctions | None = None
 
     def of(self, *kinds: _Kind) -> list[Path]:
         """Return the named files of some kinds."""
@@ -359,7 +362,8 @@ class Outputs(NamedTuple):
     @property
     def _read(self) -> list[Path]:
         """The files that are read: no output may replace them."""
-        return [path for path in (self.source, self.beside, *self.fed_by) if path is not None]
+        own = None if self.functions is None else self.functions.path
+        return [path for path in (self.source, self.beside, *self.fed_by, own) if path is not None]
 
     def _with_free_default(self, like: Path) -> Outputs:
         from xlmc.excel.workbook.target import Target, free_target, refuse_read
@@ -442,7 +446,8 @@ class Outputs(NamedTuple):
         """
         from xlmc.api import open_run
 
-        return None if self.beside is None else open_run(self.beside)
+        own = None if self.functions is None else self.functions.path
+        return None if self.beside is None else open_run(self.beside, functions=own)
 
     def _write_report(self, run: Simulation, path: Path, *, overwrite: bool = False) -> Path:
         found = self.contents.wanted()

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.check import failing_lines
-from xlmc.cli.options import FilePath, jobs_option
+from xlmc.cli.options import FilePath, functions_option, jobs_option
 from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.excel.workbook.workbook import CellValue
     from xlmc.outputs.replay import CellDifference, Change, NumberChange, Replayed
 
@@ -37,13 +38,21 @@ _LONGEST = 60
 @jobs_option
 @click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no progress bar.")
-def replay(recorded: Path, books: tuple[Path, ...], jobs: int, as_json: bool, quiet: bool) -> None:
+@functions_option
+def replay(
+    recorded: Path,
+    books: tuple[Path, ...],
+    jobs: int,
+    as_json: bool,
+    quiet: bool,
+    functions: OwnFunctions | None,
+) -> None:
     """Repeat the run recorded in RESULTS, a result workbook or a saved run, from the definitions in the same file."""
     from xlmc.cli.progress_bar import progress_bar
     from xlmc.outputs import replay as replaying
 
     with progress_bar(quiet) as progress:
-        found = replaying.replay(recorded, books=books, jobs=jobs, progress=progress)
+        found = replaying.replay(recorded, books=books, jobs=jobs, progress=progress, functions=functions)
     if as_json:
         say_json(_as_json(found))
     else:

@@ -8,12 +8,13 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath
+from xlmc.cli.options import FilePath, functions_option
 from xlmc.cli.output_options import Outputs, ReportContents, output_options, results_beside
 from xlmc.cli.terminal import say
 from xlmc.cli.writing import NOT_WRITTEN
 
 if TYPE_CHECKING:
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["report"]
@@ -26,6 +27,7 @@ NOT_TO_BE_USED = 1
 @click.argument("second", metavar="[RUN]", required=False, type=FilePath())
 @output_options("RUN-results.xlsx", without=["save_run"])
 @click.option("--quiet", is_flag=True, help="Print no notes.")
+@functions_option
 def report(
     run: Path,
     second: Path | None,
@@ -34,6 +36,7 @@ def report(
     overwrite: bool,
     contents: ReportContents,
     quiet: bool,
+    functions: OwnFunctions | None,
 ) -> None:
     """Write the results of a saved run, without simulating again: the same as when it was run.
 
@@ -47,7 +50,9 @@ def report(
     from xlmc.excel.workbook.seal import read_seal
     from xlmc.excel.workbook.target import copy_ending
 
-    asked = Outputs(run, run.name, (*output, *also), overwrite=overwrite, contents=contents, beside=second)
+    asked = Outputs(
+        run, run.name, (*output, *also), overwrite=overwrite, contents=contents, beside=second, functions=functions
+    )
     if second is not None and not asked.is_one_page:
         raise click.UsageError(
             "A second run is shown on a page, and there alone: give -o PAGE.html, and no other file."
@@ -62,9 +67,9 @@ def report(
                 " xlmc simulate BOOK -o RUN.xlmcrun."
             )
         asked._replace(name=run.name if seal is None else seal.book).check(run)  # before the run
-        found = _repeated(run, quiet)
+        found = _repeated(run, quiet, functions)
     else:
-        found = open_run(run)
+        found = open_run(run, functions=functions)
         if seal is None or not seal.whole:
             say(f"warning: {run}: this saved run was changed since xlmc wrote it (its seal is broken).", err=True)
     if not quiet:
@@ -83,7 +88,7 @@ def report(
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
 
-def _repeated(results: Path, quiet: bool) -> RunResult:
+def _repeated(results: Path, quiet: bool, functions: OwnFunctions | None) -> RunResult:
     """Return the run that a result workbook records.
 
     Raises:
@@ -93,4 +98,4 @@ def _repeated(results: Path, quiet: bool) -> RunResult:
     from xlmc.outputs.replay import recorded_run
 
     with progress_bar(quiet) as progress:
-        return recorded_run(results, progress=progress)
+        return recorded_run(results, progress=progress, functions=functions)

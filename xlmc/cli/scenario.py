@@ -7,11 +7,12 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath
+from xlmc.cli.options import FilePath, functions_option
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.scenario_workbook import EditedWorkbook
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["scenario"]
@@ -25,7 +26,15 @@ _MOST_TOLD = 8
 @click.option("-o", "--output", type=FilePath(), help="Write a copy of BOOK with NAME typed in.")
 @click.option("--in-place", is_flag=True, help="Type it into BOOK itself.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
-def scenario(book: Path, name: str | None, output: Path | None, in_place: bool, overwrite: bool) -> None:
+@functions_option
+def scenario(
+    book: Path,
+    name: str | None,
+    output: Path | None,
+    in_place: bool,
+    overwrite: bool,
+    functions: OwnFunctions | None,
+) -> None:
     """Type the scenario NAME of BOOK's table xlmc_scenarios into a workbook; without NAME, list the scenarios.
 
     The cells that the scenario changes get its contents, and the formulas that depend on them get their new values.
@@ -43,7 +52,7 @@ def scenario(book: Path, name: str | None, output: Path | None, in_place: bool, 
         raise click.UsageError(f"which scenario? xlmc scenario {book} lists them.")
     if in_place:
         refuse_if_open(book)
-    model = load(book)
+    model = load(book, functions=functions)
     if name is None:
         refuse_no_scenarios(model)
         scenario_table(model.definitions)

@@ -11,13 +11,22 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import FilePath, WholeNumber, chance_option, engine_option, jobs_option, tolerance_option
+from xlmc.cli.options import (
+    FilePath,
+    WholeNumber,
+    chance_option,
+    engine_option,
+    functions_option,
+    jobs_option,
+    tolerance_option,
+)
 from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.screening import AtEnds, Cost, Screening
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.outputs.document.parts import Block, Table
     from xlmc.outputs.study_report import StudyReport
 
@@ -60,6 +69,7 @@ NOT_TO_BE_USED = 1
 @study_options(STUDY_OF_A_RUN)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@functions_option
 def screen(
     book: Path,
     tolerance: tuple[str, ...],
@@ -77,6 +87,7 @@ def screen(
     overwrite: bool,
     as_json: bool,
     quiet: bool,
+    functions: OwnFunctions | None,
 ) -> None:
     """Find which assumptions of BOOK may be held at their base values, and which filters may be left out, without
     changing its answers.
@@ -88,7 +99,7 @@ def screen(
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
-    model = load(book)
+    model = load(book, functions=functions)
     files = Files((*output, *also), [book], overwrite=overwrite, of_run=True)
     files.check()
     with step_line(quiet) as tell:

@@ -14,6 +14,7 @@ from xlmc.cli.options import (
     FilePath,
     WholeNumber,
     feed_option,
+    functions_option,
     jobs_option,
     run_options,
 )
@@ -24,6 +25,7 @@ from xlmc.cli.writing import NOT_WRITTEN
 if TYPE_CHECKING:
     from xlmc.analysis.studies.scenario_answers import ScenarioAnswers
     from xlmc.errors import Notice
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
 
@@ -50,6 +52,7 @@ _MOST_MOVED = 4
 @click.option("--in-place", is_flag=True, help="Write the result sheets into BOOK itself.")
 @output_options("BOOK-results.xlsx")
 @click.option("--quiet", is_flag=True, help="Print no progress bar and no notes.")
+@functions_option
 def simulate(
     book: Path,
     feed: tuple[str, ...],
@@ -59,6 +62,7 @@ def simulate(
     overwrite: bool,
     contents: ReportContents,
     quiet: bool,
+    functions: OwnFunctions | None,
     **asked: Any,
 ) -> None:
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it, or what -o names."""
@@ -71,15 +75,15 @@ def simulate(
     from xlmc.montecarlo.simulation.simulate import run_model
 
     if os.path.isdir(book):
-        load(book)  # says so
+        load(book, functions=functions)  # says so
     feeds = read_feeds(feed)
     default = None if in_place or output else results_beside(book)
-    fed_by = tuple(Path(each.source) for each in feeds)
-    wanted = Outputs(book, book.name, (*output, *also), default, in_place, overwrite, contents, fed_by=fed_by)
+    wanted = Outputs(book, book.name, (*output, *also), default, in_place, overwrite, contents)
+    wanted = wanted._replace(fed_by=tuple(Path(each.source) for each in feeds), functions=functions)
     if in_place and len(wanted.books) > 1:
         raise click.UsageError("--in-place and -o with a workbook cannot both be given.")
     outputs = wanted.check(book) if os.path.exists(book) else wanted  # `load` says that there is no book
-    model = load(book, feeds)
+    model = load(book, feeds, functions)
     outputs.check_against(model)
     scenarios = bool(asked["scenarios"])
     if scenarios:

@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import FilePath, WholeNumber, jobs_option
+from xlmc.cli.options import FilePath, WholeNumber, functions_option, jobs_option
 from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.stability import CellDigits, Finding, Stability
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.outputs.document.parts import Table
     from xlmc.outputs.study_report import StudyReport
 
@@ -34,6 +35,7 @@ NOT_TO_BE_USED = 1
 @study_options(STUDY_OF_A_RUN)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@functions_option
 def stability(
     book: Path,
     all_cells: bool,
@@ -45,6 +47,7 @@ def stability(
     overwrite: bool,
     as_json: bool,
     quiet: bool,
+    functions: OwnFunctions | None,
 ) -> None:
     """Find where BOOK loses digits, or its numbers are not what they seem, within the ranges of its assumptions."""
     from xlmc.analysis.studies import stability as study
@@ -53,7 +56,7 @@ def stability(
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.study_report import Files
 
-    model = load(book)
+    model = load(book, functions=functions)
     files = Files((*output, *also), [book], overwrite=overwrite, of_run=True)
     files.check()
     with step_line(quiet) as tell:

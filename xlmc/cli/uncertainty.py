@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import WholeNumber, engine_option, jobs_option
+from xlmc.cli.options import WholeNumber, engine_option, functions_option, jobs_option
 from xlmc.cli.study_output import STUDY, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.uncertainty import Band, ForecastBands, TwoLoops
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.outputs.document.parts import Block, Figure, Table
     from xlmc.outputs.study_report import StudyReport
 
@@ -56,6 +57,7 @@ NOT_TO_BE_USED = 1
 @study_options(STUDY)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@functions_option
 def uncertainty(
     book: Path,
     outer: int,
@@ -72,6 +74,7 @@ def uncertainty(
     overwrite: bool,
     as_json: bool,
     quiet: bool,
+    functions: OwnFunctions | None,
 ) -> None:
     """Tell how uncertain the distributions of BOOK's answers are: what is not known is drawn in an outer loop, what
     varies in an inner one.
@@ -83,7 +86,7 @@ def uncertainty(
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
-    model = load(book)
+    model = load(book, functions=functions)
     files = Files((*output, *also), [book], overwrite=overwrite)
     files.check()
     with step_line(quiet) as tell:

@@ -9,13 +9,14 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import FilePath
+from xlmc.cli.options import FilePath, functions_option
 from xlmc.cli.study_output import STUDY, study_options
 from xlmc.cli.terminal import plain, say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.verify import CellCheck, Verification
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.outputs.document.parts import Block
 
 __all__ = ["verify"]
@@ -30,6 +31,7 @@ _SHOWN, _WRITTEN = 50, 2_000
 @click.option("--all", "everything", is_flag=True, help="Check every formula cell, not only the needed ones.")
 @study_options(STUDY)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@functions_option
 def verify(
     book: Path,
     everything: bool,
@@ -37,6 +39,7 @@ def verify(
     also: tuple[Path, ...],
     overwrite: bool,
     as_json: bool,
+    functions: OwnFunctions | None,
 ) -> None:
     """Recompute the formulas of BOOK at the base case and compare with the values that Excel saved."""
     from xlmc.analysis.studies.verify import Status
@@ -48,7 +51,7 @@ def verify(
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files, StudyReport
 
-    workbook = read_workbook(book)
+    workbook = read_workbook(book, functions=functions)
     definitions = None if everything else read_definitions(calculate_labels(workbook), ENGINES)
     if definitions is not None and not definitions.forecasts and not definitions.filters:
         raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")

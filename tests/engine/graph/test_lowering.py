@@ -92,7 +92,7 @@ REFUSED = [
     (
         "MyOwn.Macro(A1)",
         "the function MYOWN.MACRO is not known to xlmc",
-        "check its spelling, or replace it by functions xlmc knows",
+        "check its spelling; write code of a workbook or of an add-in in Python: --functions my_functions.py",
     ),
     ("SQRT(A1,2)", "SQRT has 2 arguments; it takes 1", None),
     ("SQRT()", "SQRT has 0 arguments; it takes 1", None),

@@ -155,7 +155,7 @@ def test_a_book_with_mistakes_is_not_loaded(tmp_path, monkeypatch):
     from xlmc.montecarlo.model import loading as module
 
     problems = (DefinitionError("Low is blank", where="S!B2"), DefinitionError("Name is blank", where="S!A3"))
-    monkeypatch.setattr(module, "read_workbook", lambda path: Workbook("b", {}))
+    monkeypatch.setattr(module, "read_workbook", lambda path, functions: Workbook("b", {}))
     monkeypatch.setattr(module, "read_definitions", lambda *_: Definitions(problems=problems))
     with pytest.raises(DefinitionError) as caught:
         load(tmp_path / "book.xlsx")

@@ -103,7 +103,9 @@ def edited_workbook(model: CompiledModel, scenario: Scenario | str) -> EditedWor
         parts[part] = with_calculation_on_load(parts[part], part)
     data = checked_bytes(parts, book.parts) if cells or is_old_workbook(book.data) else book.data
     _refuse_difference(
-        wanted, build_model(read_workbook(data, book.name), model.path, python=model.definitions.python), found
+        wanted,
+        build_model(read_workbook(data, book.name, book.functions), model.path, python=model.definitions.python),
+        found,
     )
     typed = {cell: (book.content(cell).value, value) for cell, value in sorted(cells.items())}
     results = bool(result_sheets(book.parts))

@@ -56,6 +56,10 @@ SPECIAL: Final[Mapping[str, tuple[int, int]]] = {
 }
 """The fewest and the most arguments of functions that are lowered in a way of their own."""
 
+_GIVE: Final = "write code of a workbook or of an add-in in Python: --functions my_functions.py"
+_CLOSE: Final = 0.75
+"""Likeness above which a name may be meant for another one."""
+
 _ADD_INS: Final = ("CB.", "RISK")
 _CODE: Final = ("vbaproject", "macrosheets")
 """Words in the names of the parts of a file that hold the workbook's own functions."""
@@ -117,21 +121,29 @@ def unknown_to_excel(call: ir.Call, parts: Iterable[str]) -> bool:
     return not any(word in part.casefold() for part in parts for word in _CODE)
 
 
-def not_computed(name: str) -> FormulaError:
-    """Refuse a function without a body here."""
+def not_computed(name: str, own: tuple[str, ...] = (), file: str = "") -> FormulaError:
+    """Refuse a function without a body here.
+
+    Args:
+        name: of the function, in capitals.
+        own: the names of the person's own functions, where a file of these is given.
+        file: its name.
+    """
     if name in LEFT_OUT:
-        hint = "replace it by functions that xlmc computes: docs/functions.md lists them"
+        hint = f"replace it by functions that xlmc computes, which docs/functions.md lists, or {_GIVE}"
         return FormulaError(f"xlmc does not compute the function {name} of Excel", hint=hint)
-    return FormulaError(f"the function {name} is not known to xlmc", hint=_hint(name))
+    missing = f", and {file} does not define it" if file else ""
+    return FormulaError(f"the function {name} is not known to xlmc{missing}", hint=_hint(name, own))
 
 
 @cache
-def _hint(name: str) -> str:
+def _hint(name: str, own: tuple[str, ...]) -> str:
     """Say what to do about an unknown function. A workbook of another program calls each many times, and may have the
     rest computed: to look through all names takes longer than that.
     """
-    close = get_close_matches(name, [key for key in REGISTRY if key[0].isalpha()], n=1)
-    return f"did you mean {close[0]}?" if close else "check its spelling, or replace it by functions xlmc knows"
+    known = {each.upper(): each for each in own} | {key: key for key in REGISTRY if key[0].isalpha()}
+    close = get_close_matches(name, known, n=1, cutoff=_CLOSE)
+    return f"did you mean {known[close[0]]}?" if close else f"check its spelling; {_GIVE}"
 
 
 @cache

@@ -487,8 +487,12 @@ class Lowering(TreeLowering):
             return made
         parts = self.graph.workbook.parts
         if self._unknown is not None and function_named(name) is None and unknown_to_excel(call, parts):
-            return self._name_error(name, not_computed(name))
+            return self._name_error(name, self._not_computed(name))
         return self.call_by_name(name, arguments, scope)
+
+    def _not_computed(self, name: str) -> FormulaError:
+        own = self.graph.workbook.functions
+        return not_computed(name) if own is None else not_computed(name, own.names, own.file)
 
     def _name_error(self, name: str, unless_saved: FormulaError | None) -> int:
         """Lower a name or function that Excel does not know; `unless_saved` is raised if it saved no #NAME?."""
@@ -500,7 +504,7 @@ class Lowering(TreeLowering):
         """Lower a function of values."""
         function = function_named(name)
         if function is None:
-            raise not_computed(name)
+            raise self._not_computed(name)
         if function.volatile and not self._audit:
             hint = "put it in a cell of its own: the value Excel saved for it is then used, and the run can be repeated"
             raise FormulaError(f"{name} gives another value each time", hint=hint)

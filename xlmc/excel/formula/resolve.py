@@ -10,7 +10,7 @@ import re
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from difflib import get_close_matches
-from typing import Final, assert_never
+from typing import TYPE_CHECKING, Final, assert_never
 
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell
@@ -31,6 +31,9 @@ from xlmc.excel.formula.parse import parse
 from xlmc.excel.formula.shape import Shapes
 from xlmc.excel.formula.stencil import Stencil, stencil
 from xlmc.excel.workbook.workbook import Formula, Table, Workbook
+
+if TYPE_CHECKING:
+    from xlmc.excel.functions import Function
 
 __all__ = ["Resolver"]
 
@@ -146,7 +149,9 @@ class Resolver:
             case ir.Call(name, arguments, foreign):
                 resolved = tuple(self._resolve(part, host, origin) for part in arguments)
                 called = None if foreign else self._called(name, host)
-                return replace(tree, arguments=resolved) if called is None else ir.Invoke(called, resolved)
+                if called is not None:
+                    return ir.Invoke(called, resolved)
+                return replace(tree, arguments=resolved, given=self._own(name, arguments))
             case ir.Invoke(function, arguments):
                 called = self._resolve(function, host, origin)
                 return ir.Invoke(called, tuple(self._resolve(part, host, origin) for part in arguments))
@@ -181,6 +186,11 @@ class Resolver:
         body = self._resolve(arguments[-1], host, origin)
         self._variables = outer
         return ir.Lambda(tuple(_bare(name) for name, _ in parameters), body, _optional(parameters))
+
+    def _own(self, name: str, arguments: tuple[ir.Expression, ...]) -> Function | None:
+        """Return the person's own function of a name; None if there is none."""
+        functions = self.workbook.functions
+        return None if functions is None else functions.named(name, len(arguments))
 
     def _called(self, name: str, host: Cell) -> ir.Expression | None:
         """Return what a call calls that is no function of Excel: a variable, or a defined name that stands for a

@@ -6,6 +6,7 @@ import hashlib
 import posixpath
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING, Final
 
@@ -32,10 +33,14 @@ from xlmc.excel.workbook.workbook import CellContent, CellValue, DefinedName, Li
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
+    from xlmc.excel.own_functions import OwnFunctions
+
 __all__ = ["Links", "linked_files", "read_workbook"]
 
 
-def read_workbook(source: str | Path | bytes, name: str | None = None) -> Workbook:
+def read_workbook(
+    source: str | Path | bytes, name: str | None = None, functions: OwnFunctions | None = None
+) -> Workbook:
     """Read an `.xlsx` or `.xlsm` file; or an `.xls`, whose cells LibreOffice converts, where it is installed.
 
     Nothing in it is run, followed or changed. Sheets are parsed when first looked up, so a damaged sheet complains
@@ -44,13 +49,16 @@ def read_workbook(source: str | Path | bytes, name: str | None = None) -> Workbo
     Args:
         source: the file's path, or its bytes.
         name: what to call the workbook; by default the file's own name.
+        functions: a person's own, which its formulas may call.
 
     Raises:
         WorkbookError: the file cannot be opened, is no workbook, is encrypted, damaged or unreasonably large.
     """
     if isinstance(source, bytes):
-        return _read(source, name or "workbook", name or "workbook")
-    return _read(_file_bytes(Path(source)), name or Path(source).name, str(source))
+        found = _read(source, name or "workbook", name or "workbook")
+    else:
+        found = _read(_file_bytes(Path(source)), name or Path(source).name, str(source))
+    return found if functions is None else replace(found, functions=functions)
 
 
 def _read(data: bytes, name: str, where: str) -> Workbook:

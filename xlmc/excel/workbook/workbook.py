@@ -5,10 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from xlmc.errors import ErrorCode, Notice
 from xlmc.excel.address import Area, Cell, parse_address
 from xlmc.excel.iteration import Iteration
+
+if TYPE_CHECKING:
+    from xlmc.excel.own_functions import OwnFunctions
 
 __all__ = [
     "CellContent",
@@ -252,6 +256,7 @@ class Workbook:
         origin: the parts of the file that it was read from, where values have been typed since and it has no `parts`.
         sha256: of the file.
         data: the file itself, byte for byte; otherwise empty.
+        functions: what its formulas call beside Excel's functions; None for nothing.
     """
 
     name: str
@@ -271,6 +276,7 @@ class Workbook:
     origin: Mapping[str, bytes] = field(default_factory=dict, repr=False)
     sha256: str = ""
     data: bytes = field(default=b"", repr=False)
+    functions: OwnFunctions | None = None
 
     def __getitem__(self, place: str) -> CellValue:
         """Return the value that is saved in a cell: a number, True or False, a text, an error, None if it is blank.

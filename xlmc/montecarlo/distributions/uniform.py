@@ -29,6 +29,7 @@ class Uniform(Family):
     name = "Uniform"
     always_finite = True
     parameters = (LOW, HIGH)
+    roles = ("ordered", "ordered")
     formula = "density 1/(High − Low) from Low to High"
     source = "Johnson, Kotz and Balakrishnan, Continuous Univariate Distributions, vol. 2, ch. 26"
     elsewhere = ("Crystal Ball Uniform (minimum, maximum)", "@RISK Uniform(min, max)")

@@ -19,6 +19,7 @@ from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.errors import DefinitionError, DefinitionsError, Notice, SimulationError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
+from xlmc.excel.own_functions import OwnFunctions
 from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.workbook import CellValue, Workbook
@@ -42,19 +43,20 @@ _DRAWN: Final = 64
 """Trials that are looked at beside the base case, in which a quantity may happen to be 0 or 1."""
 
 
-def load(path: str | Path, feeds: Sequence[Feed] = ()) -> CompiledModel:
+def load(path: str | Path, feeds: Sequence[Feed] = (), functions: OwnFunctions | None = None) -> CompiledModel:
     """Read a workbook and compile what its forecasts and filters need.
 
     Args:
         path: of the workbook.
         feeds: which of its assumptions take answers of other workbooks, which are read, too.
+        functions: a person's own, which formulas of all these workbooks may call.
 
     Raises:
         WorkbookError: a file cannot be read.
         SimulationError: the workbooks cannot be joined.
         DefinitionError, FormulaError: as for `build_model`.
     """
-    return fed(build_model(read_workbook(path), Path(path)), feeds)
+    return fed(build_model(read_workbook(path, functions=functions), Path(path)), feeds)
 
 
 def fed(model: CompiledModel, feeds: Sequence[Feed]) -> CompiledModel:
@@ -75,7 +77,8 @@ def fed(model: CompiledModel, feeds: Sequence[Feed]) -> CompiledModel:
         if paths.setdefault(feed.file, source).resolve() != source.resolve():
             message = f"two of the workbooks are called {feed.file!r}"
             raise SimulationError(message, where=feed.file, hint="rename one of the files")
-    return joined(model, feeds, {name: load(source) for name, source in paths.items()})
+    functions = model.workbook.functions
+    return joined(model, feeds, {name: load(source, functions=functions) for name, source in paths.items()})
 
 
 def model_with_values(

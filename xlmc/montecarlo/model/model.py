@@ -337,8 +337,9 @@ class CompiledModel:
     @property
     def files(self) -> tuple[Path, ...]:
         """The files that it was read from, its workbook first: no output may replace one of them."""
-        feeding = self.definitions.feeding
-        return (self.path, *dict.fromkeys(Path(each.source) for each in (() if feeding is None else feeding.feeds)))
+        feeding, functions = self.definitions.feeding, self.workbook.functions
+        fed_by = dict.fromkeys(Path(each.source) for each in (() if feeding is None else feeding.feeds))
+        return (self.path, *fed_by, *(() if functions is None else (functions.path,)))
 
     @property
     def evidence(self) -> tuple[Evidence, ...]:

@@ -80,7 +80,7 @@ def convert(model: CompiledModel, path: Path, *, overwrite: bool = False) -> Con
         marked=False,
     )
     data = checked_bytes(parts, workbook.parts)
-    _compare(model, build_model(read_workbook(data, path.name), path))
+    _compare(model, build_model(read_workbook(data, path.name, workbook.functions), path))
     write_workbook(path, data, target.check)
     return Converted(path, tables, left)
 

@@ -123,7 +123,7 @@ def page_of(state: AtRest) -> str:
 def _run_of_copy(state: AtRest) -> RunResult:
     """Run a copy of the workbook with the state typed into it."""
     edited, book = edited_state(state.own, state.adjustments, state.name), state.own.workbook
-    run = run_model(build_model(read_workbook(edited.data, book.name), state.own.path), RunOptions())
+    run = run_model(build_model(read_workbook(edited.data, book.name, book.functions), state.own.path), RunOptions())
     if not _is_same(run, state.run):
         message = "a copy of the workbook with these changes gives other numbers than the window shows"
         raise SimulationError(message, hint="Nothing was written; please report this")

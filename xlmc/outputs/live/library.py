@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Final
 
 from xlmc.errors import WorkbookError, XlmcError
+from xlmc.excel.own_functions import OwnFunctions
 from xlmc.excel.workbook.package import is_old_workbook
 from xlmc.excel.workbook.printable import printable
 from xlmc.excel.workbook.target import refuse_existing, unused_path
@@ -52,12 +53,19 @@ class Library:
         book: the one workbook that was given.
         folder: whose workbooks may be opened, and where copies of templates go.
         samples: the templates.
+        functions: a person's own, which formulas of all these workbooks may call.
     """
 
     def __init__(
-        self, keeper: Keeper, *, book: Path | None = None, folder: Path | None = None, samples: Sequence[Sample] = ()
+        self,
+        keeper: Keeper,
+        *,
+        book: Path | None = None,
+        folder: Path | None = None,
+        samples: Sequence[Sample] = (),
+        functions: OwnFunctions | None = None,
     ) -> None:
-        self.keeper, self.folder = keeper, folder
+        self.keeper, self.folder, self.functions = keeper, folder, functions
         self._paths: dict[str, Path] = {}
         self._samples: Mapping[str, Sample] = {_key(each.path): each for each in samples}
         self.trouble = ""

@@ -256,7 +256,7 @@ class OpenBook:
             await asyncio.sleep(seconds)
             self._stamp = _stamp(self.path)
             try:
-                model = await self._beside(lambda: load(self.path))
+                model = await self._beside(lambda: load(self.path, functions=self._library.functions))
             except (XlmcError, OSError) as error:
                 trouble = str(error)
                 if not isinstance(error, WorkbookError | OSError):

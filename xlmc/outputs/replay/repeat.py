@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.record import Record, make_record, recorded_feeds
+from xlmc.analysis.results.record import Record, make_record, recorded_feeds, recorded_functions
 from xlmc.analysis.results.record.needed_cells import needed_contents, recorded_cells
 from xlmc.analysis.results.record.record_parts import read_record
 from xlmc.analysis.results.record.settings_table import recorded_settings
@@ -41,6 +41,7 @@ from xlmc.outputs.replay.versions import Rule, recorded_version, rules_since
 if TYPE_CHECKING:
     from xlmc.excel.address import Cell
     from xlmc.excel.formula import ir
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.definitions import Settings
     from xlmc.montecarlo.definitions.feeds import Feed
@@ -115,6 +116,7 @@ def replay(
     jobs: int = 1,
     progress: OnProgress | None = None,
     python: Mapping[Cell, ir.Expression] | None = None,
+    functions: OwnFunctions | None = None,
 ) -> Replayed:
     """Repeat a recorded run, and compare it with its record.
 
@@ -124,6 +126,7 @@ def replay(
         jobs: threads or processes.
         progress: as for `Model.simulate`.
         python: the cells that a function of Python computes, each with the call; None for none.
+        functions: those that the run's formulas called.
 
     Raises:
         WorkbookError: the file cannot be read, holds no record, or one by an xlmc that recorded less; or a workbook
@@ -133,11 +136,12 @@ def replay(
     """
     path = Path(path)
     if path.suffix.casefold() == SUFFIX or is_saved_run(path):
-        run = open_run(path, python)
+        run = open_run(path, python, functions)
         return _replay(run.model.workbook, make_record(run), run.model, jobs, progress)
     with naming_file(str(path)):
         workbook = read_workbook(path)
         record = read_record(workbook)
+        workbook = replace(workbook, functions=recorded_functions(record, functions, path))
         model = build_model(workbook, path, python=python) if python else None
         return _replay(workbook, record, model, jobs, progress, path, _fed_by(record, path, books))
 
@@ -162,18 +166,21 @@ def _fed_by(record: Record, path: Path, books: Iterable[str | Path]) -> tuple[Fe
     return tuple(found)
 
 
-def recorded_run(path: str | Path, *, progress: OnProgress | None = None) -> RunResult:
+def recorded_run(
+    path: str | Path, *, progress: OnProgress | None = None, functions: OwnFunctions | None = None
+) -> RunResult:
     """Repeat the run that a result workbook records: under the name and with the SHA-256 of its workbook.
 
     Args:
         path: a result workbook.
         progress: as for `Model.simulate`.
+        functions: those that the run's formulas called.
 
     Raises:
         WorkbookError: the file cannot be read, holds no record, or the repeated run differs from the recorded one.
         XlmcError: as for `replay`.
     """
-    found = replay(path, progress=progress)
+    found = replay(path, progress=progress, functions=functions)
     if found.repeated is None or not found.identical:
         hint = f"xlmc replay {Path(path).name} says what differs"
         raise WorkbookError("the run that is recorded here cannot be repeated as it was", where=path, hint=hint)

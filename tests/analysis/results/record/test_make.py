@@ -220,7 +220,7 @@ def test_trials_and_seed_are_always_said(run):
 def test_other_settings_are_said_where_the_workbook_does_not_say_them():
     own = Settings(trials=10, seed=1, sampling="mc", engine="numpy")
     definitions = SimpleNamespace(settings=own, feeding=None, python=None)
-    model = SimpleNamespace(definitions=definitions, workbook=SimpleNamespace(name="-b.xlsx"))
+    model = SimpleNamespace(definitions=definitions, workbook=SimpleNamespace(name="-b.xlsx", functions=None))
     used = replace(own, trials=20, sampling="lhs", engine="jit")
     repeating = RunOptions.repeating(used, trials=20, by="trials", weighable=False)
     simulation = SimpleNamespace(repeating=repeating, model=model, changed_from=None)

@@ -20,5 +20,5 @@ def _short_books():
 def read_once(monkeypatch):
     """Saved runs of one workbook are opened with one model: most of the time goes into reading the workbook."""
     read, build = opening.read_workbook, opening.build_model
-    monkeypatch.setattr(opening, "read_workbook", lambda data, name: (data, name))
-    monkeypatch.setattr(opening, "build_model", cache(lambda book, path: build(read(*book), path)))
+    monkeypatch.setattr(opening, "read_workbook", lambda data, name, functions: (data, name))
+    monkeypatch.setattr(opening, "build_model", cache(lambda book, path, python: build(read(*book), path)))

@@ -73,6 +73,15 @@ def test_a_blank_location_stays_at_its_default_unless_there_is_a_percentile_for_
     assert extra(one("Lognormal", P10=2, P50=4, P90=9)).parameters == {"p10": 2.0, "p50": 4.0, "p90": 9.0}
 
 
+@pytest.mark.parametrize(
+    ("given", "ends"),
+    [({"P5": 10.5, "P95": 19.5}, (10, 20)), ({"Low": 10, "P90": 19}, (10, 20)), ({"P25": 1, "High": 4}, (0, 4))],
+)
+def test_a_uniform_has_the_ends_that_its_percentiles_ask_for(one, given, ends):
+    draw = extra(one("Uniform", **given)).checked
+    assert draw.distribution.support() == pytest.approx(ends, abs=1e-12)
+
+
 def test_a_formula_stays_a_cell(one):
     assumption = extra(one("Normal", P10=("=0.4*2", 0.8), P90=2.0))
     assert assumption.parameters["p10"] == Cell("Extra", 2, 4)
@@ -81,7 +90,8 @@ def test_a_formula_stays_a_cell(one):
 @pytest.mark.parametrize(
     ("distribution", "columns", "where", "message"),
     [
-        ("Uniform", {"P10": 1, "P90": 2}, "Extra!A2", "Uniform needs Low"),
+        ("Uniform", {"P10": 1}, "Extra!D2", "Uniform leaves Low, High blank, and gives P10"),
+        (None, {"P10": 1, "P90": 2}, "Extra!A2", "the row gives P10, P90, and no Distribution"),
         ("Normal", {"P10": 1}, "Extra!D2", "Normal leaves Mean, Std dev blank, and gives P10"),
         (
             "Normal",
@@ -124,8 +134,8 @@ def test_a_base_case_outside_is_pointed_out(one):
 
 
 def test_families_that_take_percentiles():
-    """Every continuous one but Uniform, and but those that are told by points or percentiles already."""
-    without = {"Uniform", "Trigen", "Cumul", "General", "Histogrm"}
+    """Every continuous one but those that are told by points or percentiles already."""
+    without = {"Trigen", "Cumul", "General", "Histogrm"}
     continuous = [family for family in FAMILIES.values() if family.roles]
     assert len(continuous) >= 15
     assert without.isdisjoint(family.name for family in continuous)

@@ -2,7 +2,17 @@
 
 from __future__ import annotations
 
-from xlmc.analysis.results.record.make import changed_from_of, make_record, recorded_feeds
+from xlmc.analysis.results.record.make import changed_from_of, make_record, recorded_feeds, recorded_functions
 from xlmc.analysis.results.record.record_parts import Entry, Record, RecordTable, Section, Value
 
-__all__ = ["Entry", "Record", "RecordTable", "Section", "Value", "changed_from_of", "make_record", "recorded_feeds"]
+__all__ = [
+    "Entry",
+    "Record",
+    "RecordTable",
+    "Section",
+    "Value",
+    "changed_from_of",
+    "make_record",
+    "recorded_feeds",
+    "recorded_functions",
+]

@@ -28,6 +28,7 @@ from xlmc.analysis.results.record.needed_cells import cell_section, needed_conte
 from xlmc.analysis.results.record.record_parts import Entry, Record, RecordTable, Section
 from xlmc.analysis.results.record.settings_table import settings_section
 from xlmc.analysis.results.statements.in_words import errors_text, generator_text, method_text
+from xlmc.excel.own_functions import OwnFunctions, the_same_functions
 from xlmc.excel.workbook.inject import original_hash
 from xlmc.montecarlo.columns import parts
 from xlmc.montecarlo.definitions.feeds import Feed
@@ -50,6 +51,7 @@ __all__ = [
     "processor",
     "quoted_argument",
     "recorded_feeds",
+    "recorded_functions",
     "repeat_command",
     "simulate_command",
     "versions",
@@ -92,6 +94,9 @@ CHANGED_FROM: Final = "changed"
 
 FEEDS: Final = "feeds"
 """Key of the section on the workbooks that fed the run."""
+
+FUNCTIONS: Final = "functions"
+"""Key of the section on the file of a person's own functions."""
 
 _FEED_COLUMNS: Final = (
     ("assumption", "Assumption"),
@@ -148,6 +153,7 @@ def make_record(simulation: RunResult, command: str | None = None) -> Record:
             _file(simulation),
             *([] if simulation.changed_from is None else [_changed_from(simulation.changed_from)]),
             *_feeds(simulation),
+            *_functions(simulation),
             _counts(simulation),
             _end(simulation),
             _sampling(simulation),
@@ -241,6 +247,30 @@ def _feeds(simulation: RunResult) -> Iterator[Section]:
         for feed in feeding.feeds
     )
     yield Section(FEEDS, "Fed by other workbooks, trial by trial", table=RecordTable(_FEED_COLUMNS, rows))
+
+
+def _functions(simulation: RunResult) -> Iterator[Section]:
+    """Return the file of a person's own functions, which formulas call; nothing where there is none."""
+    own = simulation.model.workbook.functions
+    if own is not None:
+        entries = Entry("name", "File", own.file), Entry("sha256", "SHA-256 of the file", own.sha256)
+        yield Section(FUNCTIONS, "Functions in Python, which formulas call", entries)
+
+
+def recorded_functions(record: Record, given: OwnFunctions | None, path: Path) -> OwnFunctions | None:
+    """Return the functions that the formulas of a recorded run called; None where there were none.
+
+    Args:
+        record: of the run.
+        given: the functions that the person named.
+        path: of the file with the record.
+
+    Raises:
+        WorkbookError: the person named none, or others.
+    """
+    if FUNCTIONS not in record:
+        return None
+    return the_same_functions(given, str(record["functions.name"]), str(record["functions.sha256"]), path)
 
 
 def recorded_feeds(record: Record) -> list[tuple[Feed, str]]:
@@ -425,6 +455,9 @@ def repeat_command(simulation: RunResult) -> str:
     feeding = simulation.model.definitions.feeding
     for feed in () if feeding is None else feeding.feeds:
         arguments += ["--feed", feed.text]
+    own = simulation.model.workbook.functions
+    if own is not None:
+        arguments += ["--functions", own.file]
     if simulation.model.definitions.python:
         return f"in Python, of the model of {Path(book).stem}: {_python_call(arguments)}"
     return first + simulate_command(book, arguments)

@@ -16,6 +16,7 @@ from xlmc.analysis.results.record.make import processor, versions
 from xlmc.analysis.results.saved.archive import RUN, SUFFIX, WORKBOOK, column_header, column_parts, write_entries
 from xlmc.analysis.results.saved.run_json import FORMAT, VERSION, settings_document, tally_document
 from xlmc.errors import SimulationError, WorkbookError
+from xlmc.excel.own_functions import OwnFunctions
 from xlmc.excel.workbook.seal import blank_seal, seal_file
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import whole_file
@@ -112,6 +113,11 @@ def _feeding_document(simulation: RunResult) -> dict[str, Any]:
     return {"feeds": feeds, "fed_by": books}
 
 
+def _functions_document(functions: OwnFunctions | None) -> dict[str, Any]:
+    """Name the file of a person's own functions; a saved run holds no code."""
+    return {} if functions is None else {"functions": {"name": functions.file, "sha256": functions.sha256}}
+
+
 def _columns(simulation: RunResult) -> Iterator[_Column]:
     yield _Column("trial", "", "<i8", simulation.trial_index)
     for kind, columns in (
@@ -130,6 +136,7 @@ def _document(simulation: RunResult, columns: list[dict[str, Any]]) -> dict[str,
         "version": VERSION,
         "workbook": {"name": model.workbook.name, "sha256": model.workbook.sha256},
         **_feeding_document(simulation),
+        **_functions_document(model.workbook.functions),
         "settings": settings_document(simulation.settings),
         "order": [name_key(name) for name in simulation.plan.order],
         "block": simulation.block,

@@ -34,6 +34,7 @@ from xlmc.analysis.results.saved.run_json import (
 from xlmc.errors import SimulationError, WorkbookError, XlmcError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
+from xlmc.excel.own_functions import OwnFunctions, the_same_functions
 from xlmc.excel.workbook.package import LIMITS
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.columns import ColumnStore, parts
@@ -71,7 +72,7 @@ def is_saved_run(path: Path) -> bool:
         return False
 
 
-def open_run(path: str | Path, python: Python | None = None) -> RunResult:
+def open_run(path: str | Path, python: Python | None = None, functions: OwnFunctions | None = None) -> RunResult:
     """Open the run that was saved in a file, with the model of its workbook: every statistic is the same to the last
     bit.
 
@@ -80,15 +81,16 @@ def open_run(path: str | Path, python: Python | None = None) -> RunResult:
     Args:
         path: of the file.
         python: the cells that a function of Python computes, each with the call; None for none.
+        functions: those that the run's formulas called.
 
     Raises:
-        WorkbookError: the file cannot be read, is no saved run, or is damaged.
+        WorkbookError: the file cannot be read, is no saved run, or is damaged; or these are not its functions.
         XlmcError: this xlmc refuses its workbook.
     """
     path = Path(path)
     with open_package(path) as package:
         found = _document(package, path)
-        model = _model(package, found, path, python)
+        model = _model(package, found, path, python, _functions(found, functions, path))
         try:
             if settings_of(found["settings"]).evidence == "weights":
                 model = weighing(model)
@@ -132,25 +134,47 @@ def _document(package: Package, path: Path) -> Document:
     return dict(found)
 
 
-def _model(package: Package, found: Document, path: Path, python: Python | None) -> CompiledModel:
+def _functions(found: Document, given: OwnFunctions | None, path: Path) -> OwnFunctions | None:
+    """Return the functions that the run's formulas called; None where there were none."""
+    if "functions" not in found:
+        return None
+    try:
+        about = build(_Book, found["functions"], "its functions")
+    except (KeyError, ValueError) as error:
+        raise _damage_error(path, error) from error
+    return the_same_functions(given, about.name, about.sha256, path)
+
+
+def _model(
+    package: Package, found: Document, path: Path, python: Python | None, functions: OwnFunctions | None
+) -> CompiledModel:
     try:
         about = build(_Book, found["workbook"], "its workbook")
     except (KeyError, ValueError) as error:
         raise _damage_error(path, error) from error
-    alone = _model_of(package, WORKBOOK, about, path, python)
+    alone = _model_of(package, WORKBOOK, about, path, python, functions)
     if "feeds" not in found:
         return alone
     try:
         feeds = tuple(build(Feed, each, "its feeds") for each in found["feeds"])
         books = [build(_Book, each, "the workbooks that fed it") for each in found["fed_by"]]
-        sources = {each.name: _model_of(package, f"fed/{n}", each, path) for n, each in enumerate(books)}
+        sources = {
+            each.name: _model_of(package, f"fed/{n}", each, path, None, functions) for n, each in enumerate(books)
+        }
         require({feed.source for feed in feeds} == sources.keys(), "the workbooks that fed it")
     except (KeyError, TypeError, ValueError) as error:
         raise _damage_error(path, error) from error
     return joined(alone, feeds, sources)
 
 
-def _model_of(package: Package, entry: str, about: _Book, path: Path, python: Python | None = None) -> CompiledModel:
+def _model_of(
+    package: Package,
+    entry: str,
+    about: _Book,
+    path: Path,
+    python: Python | None,
+    functions: OwnFunctions | None,
+) -> CompiledModel:
     """Return the model of a workbook in the package.
 
     Raises:
@@ -163,7 +187,7 @@ def _model_of(package: Package, entry: str, about: _Book, path: Path, python: Py
         data = reader.read()
     if hashlib.sha256(data).hexdigest() != about.sha256:
         raise WorkbookError("the workbook in the saved run is not the one that was run", where=path, hint=AGAIN)
-    return build_model(read_workbook(data, name), Path(name), python=python)
+    return build_model(read_workbook(data, name, functions), Path(name), python=python)
 
 
 @dataclass(frozen=True, slots=True)

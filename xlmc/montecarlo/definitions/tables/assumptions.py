@@ -30,7 +30,7 @@ from xlmc.montecarlo.definitions.tables.table_rows import (
 from xlmc.montecarlo.distributions import FAMILIES, Family, ParameterSpec, family_named
 from xlmc.montecarlo.distributions.by_moments import COV, COV_SHARE, by_moments
 from xlmc.montecarlo.distributions.by_percentiles import by_percentiles
-from xlmc.montecarlo.distributions.parameters import MEAN, STD_DEV, show
+from xlmc.montecarlo.distributions.parameters import HIGH, LOW, MEAN, STD_DEV, show
 from xlmc.montecarlo.distributions.spelling import name_key, nearest, plain
 from xlmc.montecarlo.sampling.draws import Draw
 
@@ -70,6 +70,8 @@ _FIXED = (
 _KNOWN = (*_FIXED, *PARAMETERS, *OPTIONS)
 
 _SLIP = 0.7  # likeness above which a column may be meant for one that a distribution needs
+
+_CHOOSE = "Choose one under Distribution, such as Normal or Lognormal"
 
 _HEADING = re.compile(r"p(\d{1,3}(?:\.\d+)?)")
 
@@ -356,9 +358,7 @@ def _with_moments(row: Row, family: Family, typed: str) -> Family:
         raise DefinitionError(message, where=row.cell(heading), hint="Give Mean, too")
     if not typed:
         message = f"the row gives Mean and {row.heading(heading)}, and no Distribution"
-        raise DefinitionError(
-            message, where=row.where, hint="Choose one under Distribution, such as Normal or Lognormal"
-        )
+        raise DefinitionError(message, where=row.where, hint=_CHOOSE)
     given = [spec.key for spec in family.parameters if any(map(row.filled, spec.headings))]
     try:
         return by_moments(family, given, spread)
@@ -435,6 +435,9 @@ def _with_percentiles(row: Row, family: Family) -> Family:
     headings = [heading for heading in row.headings if is_percentile(heading) and row.filled(heading)]
     if not (headings and family.roles):
         return family
+    if not row.filled("Distribution") and not any(map(row.filled, (*LOW.headings, *HIGH.headings))):
+        message = f"the row gives {', '.join(map(row.heading, headings))}, and no Distribution"
+        raise DefinitionError(message, where=row.where, hint=_CHOOSE)
     percents = [_percent(row, heading) for heading in headings]
     blank = [spec for spec in family.parameters if not any(row.filled(heading) for heading in spec.headings)]
     try:

@@ -45,7 +45,14 @@ def check(path: str | Path, *, functions: str | Path | None = None) -> tuple[Xlm
 
 
 def seek(
-    path: str | Path, cell: str, to: float, by: str, *, low: float | None = None, high: float | None = None
+    path: str | Path,
+    cell: str,
+    to: float,
+    by: str,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    functions: str | Path | None = None,
 ) -> Found:
     """Find the values of one cell at which another is what it is to be, every other input as the workbook has it.
 
@@ -56,6 +63,7 @@ def seek(
         by: the one to vary, without a formula; it may be an assumption.
         low: the least value of that; it comes with `high`. Without them the search goes outwards from its own value.
         high: the largest one.
+        functions: as for `check`.
 
     Raises:
         WorkbookError: the file cannot be read.
@@ -65,7 +73,7 @@ def seek(
     """
     from xlmc.analysis.studies.seek import seek
 
-    return seek(path, cell, to, by, low=low, high=high)
+    return seek(path, cell, to, by, low=low, high=high, functions=functions_of(functions))
 
 
 def verify(path: str | Path, *, everything: bool = False, functions: str | Path | None = None) -> Verification:

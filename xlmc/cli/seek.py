@@ -10,12 +10,14 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
+from xlmc.cli.options import FilePath, functions_option
 from xlmc.cli.study_output import STUDY, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.seek import Found
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.outputs.document.parts import Block
     from xlmc.outputs.study_report import StudyReport
 
@@ -25,7 +27,7 @@ NOT_FOUND = 1
 
 
 @click.command()
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=FilePath())
 @click.option("--cell", required=True, help="The cell that is to have a value: Model!D9, or a defined name.")
 @click.option("--to", type=float, required=True, help="The value that it is to have.")
 @click.option("--by", required=True, help="The cell to vary, which holds no formula: Inputs!B4, or a defined name.")
@@ -33,6 +35,7 @@ NOT_FOUND = 1
 @click.option("--high", type=float, help="The largest value of that cell.")
 @study_options(STUDY)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
+@functions_option
 def seek(
     book: Path,
     cell: str,
@@ -44,6 +47,7 @@ def seek(
     also: tuple[Path, ...],
     overwrite: bool,
     as_json: bool,
+    functions: OwnFunctions | None,
 ) -> None:
     """Find the value of one cell of BOOK at which another has a given value, all else as it is in the workbook."""
     from xlmc.analysis.studies import seek as study
@@ -52,7 +56,7 @@ def seek(
 
     files = Files((*output, *also), [book], overwrite=overwrite)
     files.check()
-    found = study.seek(book, cell, to, by, low=low, high=high)
+    found = study.seek(book, cell, to, by, low=low, high=high, functions=functions)
     report = _report(found)
     written = write_files(files.writers(report))
     if as_json:

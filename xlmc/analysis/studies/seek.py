@@ -18,6 +18,7 @@ from xlmc.engine.engines import ENGINES
 from xlmc.engine.roots import find_roots
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.excel.address import Cell, InFormula
+from xlmc.excel.own_functions import OwnFunctions
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.cell_references import cell_of_reference, is_address, split_sheet
@@ -78,7 +79,14 @@ class Found:
 
 
 def seek(
-    path: str | Path, cell: str, to: float, by: str, *, low: float | None = None, high: float | None = None
+    path: str | Path,
+    cell: str,
+    to: float,
+    by: str,
+    *,
+    low: float | None = None,
+    high: float | None = None,
+    functions: OwnFunctions | None = None,
 ) -> Found:
     """Find the values of one cell at which another is what it is to be, every other input as the workbook has it.
 
@@ -89,6 +97,7 @@ def seek(
         by: the one to vary, without a formula; it may be an assumption.
         low: the least value of that; it comes with `high`. Without them the search goes outwards from its own value.
         high: the largest one.
+        functions: a person's own, which formulas may call.
 
     Raises:
         WorkbookError: the file cannot be read.
@@ -97,7 +106,7 @@ def seek(
         FormulaError: a cell between them cannot be computed.
     """
     _check(to, low, high)
-    workbook = calculate_labels(read_workbook(path))
+    workbook = calculate_labels(read_workbook(path, functions=functions))
     wanted, unknown = (_cell(workbook, text) for text in (cell, by))
     if workbook.content(unknown).formula is not None:
         hint = "Name the input that is to be found"

@@ -169,12 +169,16 @@ def _table(found: TwoLoops, each: ForecastBands) -> Table:
     from xlmc.analysis.studies.uncertainty import DEVIATION
     from xlmc.outputs.document.parts import Table
 
-    rows = []
-    for band in each.bands:
-        text = band.form.spread if band.number == DEVIATION else band.form.estimate
-        rows.append((band.number, *map(text, (band.pooled, band.low, band.high))))
+    rows = tuple((band.number, *_texts(band, is_spread=band.number == DEVIATION)) for band in each.bands)
     heads = ("Number", "All trials", "Band from", "Band to")
-    return Table(_title(each), heads, tuple(rows), (1, 2, 3))
+    return Table(_title(each), heads, rows, (1, 2, 3))
+
+
+def _texts(band: Band, *, is_spread: bool) -> Iterator[str]:
+    """Yield the number of all trials and both ends; an end without an error in the digits of the other numbers."""
+    write = band.form.spread if is_spread else band.form.estimate
+    for end in (band.pooled, band.low, band.high):
+        yield write(end) if end.error is not None else band.form.beside(end.value, band.pooled)
 
 
 def _curve(found: TwoLoops, each: ForecastBands) -> Figure:
@@ -206,11 +210,14 @@ def _meaning(found: TwoLoops) -> Iterator[str]:
         f"Variable, drawn in the inner loop: {'; '.join(found.variable) or 'none'}."
     )
     if run.accepted < run.trials:
-        empty = f" Of {found.empty:,} outer draws no trial was accepted." if found.empty else ""
+        empty = f" For {found.empty:,} of the outer draws no trial was accepted." if found.empty else ""
+        few = min((each.effective for each in found.forecasts), default=0.0)
         yield (
-            f"Of {run.trials:,} trials {run.accepted:,} were accepted. An outer draw counts by its accepted "
-            f"trials.{empty}"
+            f"Of {run.trials:,} trials {run.accepted:,} were accepted. An outer draw counts by its accepted trials; "
+            f"together they say as much as {few:,.0f} draws of equal weight.{empty}"
         )
+    if any(end.error is None for each in found.forecasts for band in each.bands for end in (band.low, band.high)):
+        yield "An end without ± is decided by one or two outer draws: take more of them (--outer)."
     if found.wide:
         each, band = max(found.wide, key=lambda one: one[1].excess)
         yield (
@@ -253,6 +260,7 @@ def _forecast_json(each: ForecastBands) -> dict[str, object]:
         "cell": str(each.definition.cell),
         "units": each.definition.units,
         "outer_draws": each.draws,
+        "effective_outer_draws": each.effective,
         "numbers": [
             {
                 "number": band.number,

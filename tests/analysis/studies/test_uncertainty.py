@@ -216,3 +216,18 @@ def test_a_nested_plan_draws_the_same_whatever_the_blocks(inner):
     drawn = np.empty(30 * inner)
     variable.uniforms(0, drawn)
     assert np.unique(drawn).size == drawn.size
+
+
+def test_values_that_are_all_the_same_have_no_deviation():
+    model = xlmc.model(lambda m, z: {"y": m / 3 + 0 * z}, {"m": xlmc.Uniform(0, 1), "z": xlmc.Uniform(0, 1)}, ["y"])
+    deviation = bands_of(xlmc.uncertainty(model, uncertain=["m"], outer=100, inner=37))["SD"]
+    assert (deviation.low.value, deviation.high.value) == (0.0, 0.0)
+
+
+def test_draws_that_filters_keep_differently_say_as_much_as_fewer():
+    """Of draws that keep a share m of their trials, uniform, as many say as much as (Σm)²/Σm² = ¾ of all."""
+    model = xlmc.model(
+        lambda m, z: {"y": m + z, "kept": z < m}, {"m": xlmc.Uniform(0, 1), "z": xlmc.Uniform(0, 1)}, ["y"], ["kept"]
+    )
+    found = xlmc.uncertainty(model, uncertain=["m"], outer=400, inner=200)
+    assert found["y"].effective == pytest.approx(300, rel=0.02)

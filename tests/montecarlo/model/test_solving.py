@@ -185,3 +185,25 @@ def test_filters_act_on_solutions(book, tmp_path):
     accepted = closed_form(run) < 5
     assert 0.1 < accepted.mean() < 0.9
     assert run["x"].probability_above(5).value == pytest.approx(1 - accepted.mean())
+
+
+def other_book(tmp_path, name, rows, answer, formula):
+    sheets = {"I": [["Name", "Value", "Low", "High"], *rows], "M": [["Name", "Value"], [answer, formula]]}
+    path = tmp_path / name
+    workbook_of(sheets, {"xlmc_assumptions": f"I!A1:D{1 + len(rows)}", "xlmc_forecasts": "M!A1:B2"}).save(path)
+    return path
+
+
+def test_a_book_with_solutions_feeds_another(book, tmp_path):
+    source = book()
+    path = other_book(tmp_path, "fed.xlsx", [["v", 1, 0, 2], ["w", 1, 0, 2]], "z", "=I!B2*2+I!B3")
+    run = xlmc.load(path, feeds={"v": f"{source}!x"}).simulate(2_000, keep_inputs=None)
+    alone = xlmc.load(source).simulate(2_000, keep_inputs=None)
+    assert np.allclose((run.forecasts["z"] - run.inputs["w"]) / 2, alone.forecasts["x"], rtol=1e-12)
+
+
+def test_a_book_with_solutions_is_fed_by_another(book, tmp_path):
+    source = other_book(tmp_path, "source.xlsx", [["q", 1, 0, 2]], "c", "=40+I!B2*5")
+    run = xlmc.load(book(), feeds={"c": f"{source}!c"}).simulate(2_000, keep_inputs=None)
+    a, c = run.inputs["a"], 40 + 5 * run.inputs["q"]
+    assert np.allclose(run.forecasts["x"], (-1 + np.sqrt(1 + 4 * a * c)) / (2 * a), rtol=1e-12)

@@ -134,6 +134,7 @@ class ForecastBands:
         low: `(q,)` the lower ends of the band at these shares.
         high: `(q,)` the upper ends.
         draws: outer draws with a trial in which it is a number.
+        effective: as how many draws of equal weight these say, which count by their trials.
         causes: uncertain assumption -> rank correlation of its draws with the means of the forecast.
     """
 
@@ -145,6 +146,7 @@ class ForecastBands:
     low: Floats
     high: Floats
     draws: int
+    effective: float
     causes: Mapping[str, Estimate]
 
     @property
@@ -372,9 +374,11 @@ class _Grouped:
 
     @property
     def deviations(self) -> Floats:
-        """`(o,)` standard deviations; 0 of a single trial."""
+        """`(o,)` standard deviations; 0 of a single trial, and of values that are all the same."""
         apart = self.values - np.repeat(self.means, self.counts)
-        return np.sqrt(self.sums(apart * apart) / np.maximum(self.counts - 1, 1))
+        found = np.sqrt(self.sums(apart * apart) / np.maximum(self.counts - 1, 1))
+        still = self.values[self._starts] == self.values[self._starts + self.counts - 1]
+        return np.where(still, 0.0, found)
 
     def above(self, threshold: float) -> Floats:
         """`(o,)` the share of the trials above a number."""
@@ -424,6 +428,7 @@ def _bands(
         low=np.array([low for low, _ in found]),
         high=np.array([high for _, high in found]),
         draws=int(whole.draws.size),
+        effective=float(whole.counts.sum() ** 2 / (whole.counts.astype(np.float64) ** 2).sum()),
         causes={name: rank_correlation(draws[whole.draws], means) for name, draws in drawn.items()},
     )
 

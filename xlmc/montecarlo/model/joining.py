@@ -297,7 +297,8 @@ def _refuse_parts(source: CompiledModel, name: str) -> None:
         formula = source.workbook.content(host_of(cell)).formula
         many = formula is not None and formula.array is not None and formula.array.rows * formula.array.columns > 1
         called = [part.name for part in _parts(tree) if isinstance(part, ir.Call) and part.name in _OF_ONE_BOOK]
-        if many or formula is None or called:
+        solved = isinstance(tree, ir.Call) and tree.given is not None
+        if many or (formula is None and not solved) or called:
             what = f"calls {called[0]}" if called else "fills several cells"
             message = f"the formula {what}, which a workbook that feeds another cannot do"
             raise SimulationError(message, where=_moved(cell, name), hint="write it with plain references")

@@ -18,6 +18,7 @@ from openpyxl.worksheet.table import Table
 
 from xlmc.analysis.results.saved import open_run
 from xlmc.analysis.studies.methods import STATISTICS, recommendation, study
+from xlmc.analysis.studies.scenario_answers import scenario_answers
 from xlmc.api import load
 from xlmc.cli import xlmc
 from xlmc.montecarlo.model.loading import load as load_model
@@ -421,3 +422,21 @@ def test_methods_write_every_forecast_in_its_form(tmp_path):
     written = [cell for each in (bounds_table(found), forecast_table(found)) for row in each.rows for cell in row]
     assert not any(re.search(r"\b46[,.]?\d{3}\b", cell) for cell in written)
     assert not any(re.search(r"\de\+", each) for each in recommendation(found))
+
+
+def test_scenarios_compare_counted_answers_by_their_shares(tmp_path):
+    """No trial says yes to Never, in the book and in the scenario: that does not prove that none can."""
+    path = write_book(tmp_path / "book.xlsx", filtered=False)
+    book = openpyxl.load_workbook(path)
+    sheet = book.create_sheet("Scenarios")
+    for row in (["Name", "Speed in High"], ["slower", 37]):
+        sheet.append(row)
+    sheet.add_table(Table(displayName="xlmc_scenarios", ref="A1:B2"))
+    book.save(path)
+    run = load(path).simulate(trials=1_000, scenarios=True)._run
+    _, slower = scenario_answers(run)
+    found = {each.forecast.name: each for each in slower.forecasts}
+    assert found["Never"].differences["mean"].error > 0.0
+    assert found["Verdict"].text == "middle"
+    assert found["Verdict"].differences["mean"].error > 0.0
+    assert found["Avoided"].differences["mean"].value > 0.0

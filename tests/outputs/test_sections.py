@@ -14,7 +14,7 @@ from xlmc.outputs import save
 from xlmc.outputs.document import SECTIONS, Wanted, document_bytes
 from xlmc.outputs.document.build import build
 from xlmc.outputs.document.parts import Bar, Bars, Bullets, Chart, Code, Figure, Line, Lines, Paragraph, Table
-from xlmc.outputs.document.report_sections import OUTPUTS, Section
+from xlmc.outputs.document.sections import OUTPUTS, Section
 from xlmc.outputs.notebook import run_html
 from xlmc.outputs.page import page_text
 from xlmc.outputs.sheets.cells import Shown

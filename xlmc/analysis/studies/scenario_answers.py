@@ -12,20 +12,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from math import hypot
-from typing import Final
+from typing import TYPE_CHECKING, Final
 from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.analysis.studies.comparison.paired_statistics import (
-    Accepted,
-    Pair,
-    Statistic,
-    mean_of,
-    quantile_of,
-    share_above,
-)
 from xlmc.errors import DefinitionError, SimulationError, XlmcError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
@@ -38,6 +30,9 @@ from xlmc.montecarlo.simulation.simulate import BLOCK, OnProgress, run_model
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.comparison.paired_statistics import Accepted, Statistic
 
 __all__ = [
     "ForecastAnswer",
@@ -298,11 +293,15 @@ def _differences(
     run: RunResult, base: RunResult, forecast: Forecast, found: Mapping[str, Estimate], *, paired: bool
 ) -> dict[str, Estimate]:
     """Return the difference of each number from the workbook's own."""
+    from xlmc.analysis.studies.comparison.paired_statistics import Accepted, Pair
+
     own, text = base.results[forecast.name], next(iter(base.results[forecast.name].categories), None)
     columns = [each.forecasts[forecast.name] for each in (base, run)]
     if text is not None:
         own = base.saying(forecast.name, text)
         columns = [each.indicator(forecast.name, text) for each in (base, run)]
+    kinds = {own.kind, own.kind if text is not None else run.results[forecast.name].kind}
+    kind = own.kind if len(kinds) == 1 else Kind.NUMBER
     low, high = own.central()
     theirs = {"mean": own.mean, "low": low, "high": high}
     if own.definition.threshold is not None:
@@ -311,13 +310,15 @@ def _differences(
     if not paired:
         return {key: _independent(theirs[key], found[key]) for key in both}
     pairs = zip((base, run), columns, strict=True)
-    first, second = (Accepted.of(each.trial_index, column) for each, column in pairs)
+    first, second = (Accepted.of(each.trial_index, column, kind) for each, column in pairs)
     pair = Pair(first, second, run.plan.size, max(base.plan.replicates, run.plan.replicates))
     before, after = _statistics(own.definition), _statistics(forecast)
     return {key: pair.difference(before[key](first), after[key](second)) for key in both}
 
 
 def _statistics(forecast: Forecast) -> dict[str, Callable[[Accepted], Statistic]]:
+    from xlmc.analysis.studies.comparison.paired_statistics import mean_of, quantile_of, share_above
+
     tail = (1.0 - forecast.central) / 2.0
     threshold = forecast.threshold
     return {

@@ -3,7 +3,7 @@
 from xlmc.outputs.case_fields import fields_from
 from xlmc.outputs.document.build import PAPERS, Wanted, check_wanted, check_wanted_of, further_sections
 from xlmc.outputs.document.report_file import check_report_path, document_bytes, save_report
-from xlmc.outputs.document.report_sections import SECTIONS
+from xlmc.outputs.document.sections import SECTIONS
 
 __all__ = [
     "PAPERS",

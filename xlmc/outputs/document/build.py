@@ -13,7 +13,7 @@ from xlmc.excel.workbook.printable import label
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.outputs.case_fields import case_of
 from xlmc.outputs.document.parts import Block, Document, Heading
-from xlmc.outputs.document.report_sections import SECTIONS, Material
+from xlmc.outputs.document.sections import SECTIONS
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
@@ -78,6 +78,8 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
         DefinitionError: the table `xlmc_case` is not what it must be.
         SimulationError: there is no such forecast, section or paper.
     """
+    from xlmc.outputs.document.report_sections import Material
+
     check_wanted(wanted)
     workbook = simulation.model.workbook
     case = case_of(workbook, wanted.case)
@@ -115,6 +117,8 @@ def further_sections(simulation: RunResult, output: str) -> dict[str, tuple[str,
     rows = {name: section for name, section in SECTIONS.items() if output not in section.elsewhere}
     if not rows:
         return {}
+    from xlmc.outputs.document.report_sections import Material
+
     material = Material(simulation, make_record(simulation, None), _forecasts(Wanted(), simulation.model))
     found = {name: (section.heading, list(section.make(material))) for name, section in rows.items()}
     return {name: (heading, blocks) for name, (heading, blocks) in found.items() if blocks}

@@ -1,4 +1,4 @@
-"""The sections of a report: each makes its blocks from a run. `SECTIONS` lists them in their order."""
+"""What makes the blocks of each section from a run; `sections` has the rows."""
 
 from __future__ import annotations
 
@@ -61,7 +61,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Assumption
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["OUTPUTS", "SECTIONS", "Material", "Section"]
+__all__ = ["MAKERS", "Material"]
 
 _MOST_BARS, _MOST_OF_MANY = 6, 4
 _FEW: Final = 4
@@ -107,25 +107,6 @@ class Material:
         self.tables += 1
         numbered = f"Table {self.tables}. {caption}"
         return Table("", tuple(heads), tuple(map(tuple, rows)), tuple(right), tuple(widths), numbered)
-
-
-OUTPUTS: Final = ("page", "sheets", "terminal", "notebook")
-"""The outputs beside the report, of which some show a section in a form of their own."""
-
-
-@dataclass(frozen=True, slots=True)
-class Section:
-    """A section of what a run found. One row here, and it is in the report and in every other output.
-
-    Attributes:
-        heading: above it.
-        make: makes its blocks; none where there is nothing to say.
-        elsewhere: output -> where it says the same in a form of its own, or why it does not show it.
-    """
-
-    heading: str
-    make: Callable[[Material], Iterator[Block]]
-    elsewhere: Mapping[str, str] = field(default_factory=dict)
 
 
 def _answer(material: Material) -> Iterator[Block]:
@@ -504,64 +485,19 @@ def _glossary(material: Material) -> Iterator[Block]:
     yield Bullets(tuple(f"{word}: {fill(says)}" for word, says in words), "small")
 
 
-_STATED: Final = {"page": "The answer", "sheets": "Results", "terminal": "the first table", "notebook": "Answers"}
-_IN_WORKBOOK: Final = dict.fromkeys(OUTPUTS, "the workbook itself shows it")
-_REPORT_ONLY: Final = dict.fromkeys(OUTPUTS, "it explains the report")
-
-SECTIONS: Final[dict[str, Section]] = {
-    "answer": Section("The question and the answer", _answer, _STATED),
-    "scene": Section("The scene", _scene, _IN_WORKBOOK),
-    "forecasts": Section(
-        "The forecasts",
-        _forecasts,
-        {"page": "Forecasts", "sheets": "Charts", "terminal": "charts are for files", "notebook": "Answers"},
-    ),
-    "filters": Section(
-        "Filters: what a trial must meet",
-        _filters,
-        {
-            "page": "Trials and filters",
-            "sheets": "Results",
-            "terminal": "Trials rejected",
-            "notebook": "Trials rejected",
-        },
-    ),
-    "evidence": Section(
-        "Evidence, and whether it agrees",
-        _evidence,
-        {"page": "Evidence", "sheets": "Evidence results", "terminal": "Evidence", "notebook": "too long"},
-    ),
-    "scenarios": Section(
-        "Scenarios: the answers if something is changed",
-        _scenarios,
-        {"page": "Scenarios", "sheets": "Scenarios", "terminal": "Scenarios", "notebook": "too long"},
-    ),
-    "assumptions": Section(
-        "Assumptions",
-        _assumptions,
-        {"page": "Assumptions", "sheets": "Assumptions", "terminal": "xlmc check", "notebook": "shown of the model"},
-    ),
-    "sensitivity": Section(
-        "What the answers depend on",
-        _sensitivity,
-        {"page": "Sensitivity", "sheets": "Sensitivity", "terminal": "too long", "notebook": "xlmc.sensitivities"},
-    ),
-    "checks": Section(
-        "Physics checks",
-        _checks,
-        {"page": "Checks", "sheets": "Results", "terminal": "Checks", "notebook": "warnings name those that fail"},
-    ),
-    "equations": Section("Equations", _equations, _IN_WORKBOOK),
-    "notices": Section(
-        "Notices",
-        _notices,
-        {"page": "Notices", "sheets": "Results", "terminal": "printed first", "notebook": "Notice"},
-    ),
-    "repeat": Section(
-        "How to repeat this",
-        _repeat,
-        {"page": "Record", "sheets": "Record", "terminal": "files record it", "notebook": "files record it"},
-    ),
-    "glossary": Section("Words", _glossary, _REPORT_ONLY),
+MAKERS: Final[Mapping[str, Callable[[Material], Iterator[Block]]]] = {
+    "answer": _answer,
+    "scene": _scene,
+    "forecasts": _forecasts,
+    "filters": _filters,
+    "evidence": _evidence,
+    "scenarios": _scenarios,
+    "assumptions": _assumptions,
+    "sensitivity": _sensitivity,
+    "checks": _checks,
+    "equations": _equations,
+    "notices": _notices,
+    "repeat": _repeat,
+    "glossary": _glossary,
 }
-"""Name -> section; one without blocks is left out, with its heading."""
+"""Name of a section -> what makes its blocks; `sections` has their rows."""

@@ -1,5 +1,8 @@
 from __future__ import annotations
 
+import gc
+import weakref
+
 import numpy as np
 import pytest
 
@@ -58,6 +61,17 @@ def test_without_filters_each_assumption_is_sorted_once(make, monkeypatch, packa
     assert len(sorted_columns) == 2
     assert filter_effect_of(run, "a").accepted.mean == filter_effect_of(run, "a").prior.mean
     assert len(sorted_columns) == 3
+
+
+def test_what_is_known_of_an_assumption_does_not_hold_the_run(make):
+    run = make.simulate(
+        {"A1": 0.5, "B1": "=A1"}, [make.uniform("a", "A1", 0.0, 1.0)], [make.forecast("y", "B1")], trials=100
+    )
+    found, gone = filter_effect_of(run, "a"), weakref.ref(run)
+    del run
+    gc.collect()
+    assert gone() is None
+    assert found.prior.trials == found.accepted.trials == 100
 
 
 @pytest.mark.parametrize("weighted", [False, True])

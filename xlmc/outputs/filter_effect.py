@@ -8,9 +8,9 @@ assumption's draws on their own its marginal distribution.)
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING, Final
 from weakref import WeakKeyDictionary
 
@@ -66,26 +66,21 @@ class FilterEffect:
     """An assumption before and after filtering, each sorted when it is first asked for: without filters one is enough.
 
     Attributes:
-        prior_draws: `(n,)` before filtering.
-        accepted_draws: `(m,)` after it.
-        replicate: `(m,)` of the accepted draws; None if the trials themselves are independent.
-        weights: `(m,)` of the accepted draws; None if they count alike.
+        sort_prior, sort_accepted: give the two, and hold neither columns on disk nor the run.
     """
 
-    prior_draws: NDArray[np.float64]
-    accepted_draws: NDArray[np.float64]
-    replicate: NDArray[np.int64] | None = None
-    weights: NDArray[np.float64] | None = None
+    sort_prior: Callable[[], Marginal]
+    sort_accepted: Callable[[], Marginal]
 
     @cached_property
     def prior(self) -> Marginal:
         """The draws before filtering."""
-        return marginal(self.prior_draws)
+        return self.sort_prior()
 
     @cached_property
     def accepted(self) -> Marginal:
         """The accepted draws."""
-        return marginal(self.accepted_draws, self.replicate, self.weights)
+        return self.sort_accepted()
 
     @property
     def shift(self) -> Estimate:
@@ -165,11 +160,24 @@ def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | N
         return None
     found = _FOUND.setdefault(simulation, {})
     if assumption not in found:
-        accepted, replicate, weighting = simulation.inputs[assumption], simulation.replicate, simulation.weighting
-        accepted_replicates = None if replicate is None else replicate[: accepted.size]
-        weights = None if weighting is None else weighting.weights
-        found[assumption] = filter_effect(simulation.prior[assumption], accepted, accepted_replicates, weights)
+        weights = None if simulation.weighting is None else simulation.weighting.weights
+        replicate = partial(simulation.plan.replicate_of, simulation.trial_index)
+        found[assumption] = FilterEffect(
+            partial(_marginal_of, simulation.prior, assumption, lambda: None, None),
+            partial(_marginal_of, simulation.inputs, assumption, replicate, weights),
+        )
     return found[assumption]
+
+
+def _marginal_of(
+    columns: Mapping[str, NDArray[np.float64]],
+    assumption: str,
+    replicate: Callable[[], NDArray[np.int64] | None],
+    weights: NDArray[np.float64] | None,
+) -> Marginal:
+    """Return the marginal of an assumption's column, with the replicates of the trials."""
+    draws, ids = columns[assumption], replicate()
+    return marginal(draws, None if ids is None else ids[: draws.size], weights)
 
 
 def shapes_of(simulation: RunResult, assumption: str) -> Shapes | None:
@@ -200,7 +208,7 @@ def filter_effect(
     others. With the `(m,)` replicates of the accepted draws, those of the accepted come from the replicates; with their
     `(m,)` weights, from the effective sample size.
     """
-    return FilterEffect(prior, accepted, replicate, weights)
+    return FilterEffect(partial(marginal, prior), partial(marginal, accepted, replicate, weights))
 
 
 def _shift(before: Marginal, after: Marginal) -> Estimate:

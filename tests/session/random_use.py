@@ -412,7 +412,13 @@ class Use:
             assert found.forecasts[name].tobytes() == values.tobytes(), (name, self.done[-12:])
         for client in self.clients:
             frame = client.heard_last("frame")
-            assert (frame["version"], frame["accepted"]) == (session.version, expected.accepted)
+            told = (frame["version"], frame["accepted"])
+            assert told == (session.version, expected.accepted), (
+                told,
+                session.version,
+                frame["stage"],
+                self.done[-12:],
+            )
         self.compared += 1
 
 

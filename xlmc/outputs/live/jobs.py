@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final, Literal
 
 from xlmc.errors import XlmcError
-from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
+from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.interruption import looking
 from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.outputs.document.element import element, join
@@ -169,7 +169,7 @@ class StateRun:
         piece: trials after which it is looked whether the run is still wanted.
         in_memory: bytes of its trials that stay in memory.
         watched: whether that is looked at all; a run that is quick ends sooner than the next move comes.
-        draws: whether something that is shown of a run that moves needs its draws.
+        draws: trials of a run that moves whose draws are kept, as what is shown of it needs them.
     """
 
     stage: Stage
@@ -184,7 +184,7 @@ class StateRun:
     piece: int
     in_memory: int
     watched: bool
-    draws: bool
+    draws: int
 
     def run(self, wanted: Wanted, report_share: ReportShare, clock: Clock) -> Outcome:
         """Do it; see `Work`."""
@@ -218,7 +218,7 @@ class StateRun:
                     sampling="mc",
                     engine=moving.reusing.engine,
                     evidence=method,
-                    keep_inputs=KEPT_INPUTS if self.draws else 0,
+                    keep_inputs=self.draws,
                     keep_prior=False,
                     in_memory=self.in_memory,
                 )

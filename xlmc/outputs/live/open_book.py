@@ -314,7 +314,9 @@ class OpenBook:
             return
         except Exception as error:  # a fault of xlmc's own must not end the window
             outcome = Outcome(problem=f"xlmc has failed: {type(error).__name__}: {error}")
+        dropped = [session.rest]
         self._send(session.finish(job, outcome))
+        loop.run_in_executor(self._aside, dropped.clear)  # to give a run's memory and files back takes its time
 
     async def _save(self, what: str) -> None:
         """Write what is shown; say where, or why not."""

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import XlmcError
+from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS
 from xlmc.outputs.live.adjustments import (
     LIMITS,
     NONE,
@@ -72,10 +73,13 @@ _SKETCH: Final = 0.05
 MEMORY: Final = 500
 """Megabytes of runs and draws: more of a run lies in a temporary folder."""
 
-_OF_DRAWS, _OF_A_RUN = 1 / 4, 1 / 8
-"""The shares of that for draws that are kept while states move, and for each of the runs that there are at a time: at
-rest, behind it, the next one, of scenarios, and that of a moment ago.
+_OF_DRAWS, _OF_A_RUN = 1 / 4, 1 / 10
+"""The shares of that for draws that are kept while states move, and for each run at rest: the last one, the one behind
+it, the next one, and those of scenarios together. A run that moves, which is to be quick, may take as much as three.
 """
+
+_SCATTERED: Final = 10_000
+"""Trials of a run that moves whose scatter and correlation are shown."""
 
 OPENS_WITH: Final = 3
 """Forecasts whose charts are open at first."""
@@ -393,6 +397,8 @@ class Session:
         for tab in self._stopped_tabs - set(view.tabs):
             self._stopped_tabs.discard(tab)
             self._done.pop(tab, None)
+        if view.tabs != self.view.tabs:
+            self._sketch_seconds = 0.0
         self.view = view
 
     @property
@@ -459,16 +465,17 @@ class Session:
             method="rejection" if self.rest is None else self.rest.settings.evidence,
             trials=pace.quick_trials if stage == "quick" else MOVING_TRIALS,
             piece=pace.piece(resting=resting),
-            in_memory=self._of_a_run,
+            in_memory=self._of_a_run if resting else 3 * self._of_a_run,
             watched=resting or (pace.is_slow and stage == "moving"),
-            draws=self._shows_draws(stage),
+            draws=self._draws_shown(stage),
         ).run
 
-    def _shows_draws(self, stage: Stage) -> bool:
-        """Return whether draws of a run that moves are shown: in a scatter, or in *What matters* if there is time."""
+    def _draws_shown(self, stage: Stage) -> int:
+        """Return of how many trials draws are shown: all in *What matters* if there is time, few in a scatter."""
         keys = {tab.key for tab in self.view.tabs}
-        sketches = SKETCHED in keys and stage == "moving" and self._sketch_seconds < _SKETCH
-        return "pairs" in keys or sketches
+        if SKETCHED in keys and stage == "moving" and self._sketch_seconds < _SKETCH:
+            return KEPT_INPUTS
+        return _SCATTERED if "pairs" in keys else 0
 
     def finish(self, job: Job, outcome: Outcome) -> list[Message]:
         """Take what a job found; returns what windows are told of it."""
@@ -492,7 +499,9 @@ class Session:
             self._answered = self._drawn
         self._moving = outcome.simulation if job.stage == "moving" and job.version == self.version else None
         if job.stage == "rest" and job.version == self.version:
-            self.rest, self._sketch_seconds = outcome.simulation, 0.0
+            self.rest = outcome.simulation
+            if not self._pace.is_slow:
+                self._sketch_seconds = 0.0
             if self._pin_next and not self.adjustments and outcome.simulation is not None:
                 self.behind, self._behind_of, self._pin_next = outcome.simulation, self._now, False
         self._remember(found)
@@ -519,7 +528,7 @@ class Session:
     def superseded(self, job: Job) -> list[Message]:
         """Note that a job was given up: something newer is wanted, or a person stopped it."""
         if job.stage == "sketch":
-            self._sketch_seconds = math.inf  # until a state is at rest
+            self._sketch_seconds = math.inf  # until other answers are chosen, or a quick state is at rest
             return []
         stopped = job is self._stopped
         if stopped and job.stage not in RUNS:

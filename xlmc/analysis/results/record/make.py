@@ -33,6 +33,7 @@ from xlmc.excel.workbook.inject import original_hash
 from xlmc.montecarlo.columns import parts
 from xlmc.montecarlo.definitions.feeds import Feed
 from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.simulation.simulation import KEPT_INPUTS, ChangedFrom
 
 if TYPE_CHECKING:
@@ -436,6 +437,7 @@ def fingerprint(simulation: RunResult) -> str:
 
 def _update(digest: hashlib._Hash, values: NDArray[np.float64]) -> None:
     for part in parts(values):
+        checkpoint()
         digest.update(np.where(np.isnan(part), np.nan, part).astype("<f8", copy=False).data)
 
 

@@ -100,6 +100,10 @@ _UNCERTAIN = (
 )
 
 
+_REPLACED = {"b0": "=lined_{j}=1", "b1": "=tests_{j}>0"}
+"""What sheet Stiffness gives in place of an assumption, and when."""
+
+
 def _third(values: tuple[float, float, float] | Both, place: int) -> float | Both:
     if isinstance(values, Both):
         return Both(values.imperial[place], values.si[place])
@@ -117,6 +121,7 @@ def _assumptions() -> tuple[Input, ...]:
             source,
             {"Low": _third(values[j - 1], 0), "High": _third(values[j - 1], 2)},
             number_format=number_format,
+            frozen=_REPLACED[symbol].format(j=j) if symbol in _REPLACED else False,
         )
         for j in (1, 2)
         for symbol, notation, name, unit, values, source, number_format in _UNCERTAIN

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
 
 from xlsxwriter.worksheet import Worksheet
 
@@ -64,6 +65,10 @@ def _draw_table(
     for given in rows:
         _draw_assumption(sheet, styles, given, at[given.symbol][1], values)
     _guard_table(sheet, styles, HEADER_ROW + 1, HEADER_ROW + len(rows))
+    open_rows = [at[given.symbol][1] for given in rows if not isinstance(given.frozen, str)]
+    for _, run in groupby(enumerate(open_rows), lambda pair: pair[1] - pair[0]):
+        numbers = [row for _, row in run]
+        _offer_frozen(sheet, numbers[0], numbers[-1])
 
 
 def _fold_columns(sheet: Worksheet) -> None:
@@ -120,7 +125,10 @@ def _draw_assumption(sheet: Worksheet, styles: Styles, given: Input, row: int, v
             sheet.write_blank(row, column, None, styles("number", shown))
         else:
             sheet.write_number(row, column, value, styles("number", shown))
-    if given.frozen:
+    if isinstance(given.frozen, str):
+        write_formula(sheet, row, _FROZEN, given.frozen.removeprefix("="), styles("centred"), values)
+        guard(sheet, (row, _FROZEN, row, _FROZEN), "A formula", "It holds this input where another sheet replaces it.")
+    elif given.frozen:
         sheet.write_string(row, _FROZEN, "TRUE", styles("open centred"))
     else:
         sheet.write_blank(row, _FROZEN, None, styles("open centred"))
@@ -153,22 +161,21 @@ def _guard_table(sheet: Worksheet, styles: Styles, first: int, last: int) -> Non
             "error_message": "Not in the list. Leave it only if your version of xlmc knows this distribution.",
         },
     )
-    sheet.data_validation(
-        first,
-        _FROZEN,
-        last,
-        _FROZEN,
-        {
-            "validate": "list",
-            "source": ["TRUE", "FALSE"],
-            "input_title": "Frozen",
-            "input_message": "TRUE holds this input at its green value. Blank is FALSE.",
-        },
-    )
     value, low, high = (f"${column}{first + 1}" for column in "DGH")
     outside = f"=OR(AND(ISNUMBER({low}),{value}<{low}),AND(ISNUMBER({high}),{value}>{high}))"
     rule = {"type": "formula", "criteria": outside, "format": styles("wrong")}
     sheet.conditional_format(first, VALUE_COLUMN, last, VALUE_COLUMN, rule)
+
+
+def _offer_frozen(sheet: Worksheet, first: int, last: int) -> None:
+    """Offer TRUE and FALSE in these rows of the column Frozen."""
+    rule = {
+        "validate": "list",
+        "source": ["TRUE", "FALSE"],
+        "input_title": "Frozen",
+        "input_message": "TRUE holds this input at its green value. Blank is FALSE.",
+    }
+    sheet.data_validation(first, _FROZEN, last, _FROZEN, rule)
 
 
 def _draw_fixed(

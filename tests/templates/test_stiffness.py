@@ -145,6 +145,8 @@ def test_the_scatter_is_drawn_as_students_t_and_held_without_tests(read):
     book = entered(read("crush-energy"), tests, given)
     names = [each for each in model_of(book).definitions.assumptions if "sister" in each.name]
     assert [each.frozen for each in names] == [False, True]
+    slopes = {each.name: each.frozen for each in model_of(book).definitions.assumptions if "b1" in each.name}
+    assert list(slopes.values()) == [True, False]  # the tests replace that of vehicle 1
     t = simulated(model_of(book), 20_000).prior[names[0].name]
     assert kstest(t, "t", args=(2,)).pvalue > 1e-3
 

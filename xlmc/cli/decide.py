@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import WholeNumber, engine_option, jobs_option
+from xlmc.cli.options import FilePath, WholeNumber, engine_option, functions_option, jobs_option
 from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.decisions import Decided
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.outputs.document.parts import Block, Figure, Table
     from xlmc.outputs.study_report import StudyReport
 
@@ -28,7 +29,7 @@ _MOST_LINES = 6
 
 
 @click.command()
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=FilePath())
 @click.option(
     "--table",
     multiple=True,
@@ -43,6 +44,7 @@ _MOST_LINES = 6
 @study_options(STUDY_OF_A_RUN)
 @click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@functions_option
 def decide(
     book: Path,
     table: tuple[str, ...],
@@ -55,6 +57,7 @@ def decide(
     overwrite: bool,
     as_json: bool,
     quiet: bool,
+    functions: OwnFunctions | None,
 ) -> None:
     """Tell the answers of BOOK for every combination of its decisions, over the same random numbers."""
     from xlmc.analysis.studies import decisions as study
@@ -64,7 +67,7 @@ def decide(
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
-    model = load(book)
+    model = load(book, functions=functions)
     files = Files((*output, *also), [book], overwrite=overwrite, of_run=True)
     files.check()
     with step_line(quiet) as tell:

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import WholeNumber, engine_option, functions_option, jobs_option
+from xlmc.cli.options import FilePath, WholeNumber, engine_option, functions_option, jobs_option
 from xlmc.cli.study_output import STUDY, study_options
 from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import write_files
@@ -27,7 +27,7 @@ NOT_TO_BE_USED = 1
 
 
 @click.command()
-@click.argument("book", type=click.Path(path_type=Path))
+@click.argument("book", type=FilePath())
 @click.option("--outer", type=WholeNumber(1), default=250, show_default=True, help="Draws of what is uncertain.")
 @click.option(
     "--inner", type=WholeNumber(1), default=1_000, show_default=True, help="Trials of what varies, for each of them."

@@ -65,7 +65,7 @@ def leave_out_fits(patch: pytest.MonkeyPatch) -> None:
 
 def leave_out_shapes(patch: pytest.MonkeyPatch) -> None:
     """Have no shapes drawn beside the assumptions, as long as the patch lasts."""
-    patch.setattr(assumptions_sheet, "_DRAWN", 0)
+    patch.setattr(assumptions_sheet, "DRAWN", 0)
 
 
 def keep_few_trials(patch: pytest.MonkeyPatch, rows: int = FEW) -> None:

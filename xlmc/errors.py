@@ -6,6 +6,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -18,6 +19,7 @@ __all__ = [
     "SimulationError",
     "WorkbookError",
     "XlmcError",
+    "capitalised",
     "sentence",
     "shortened",
 ]
@@ -82,14 +84,20 @@ def sentence(text: str) -> str:
 _COMMANDS = ("xlmc", "pip")
 
 
-def _begun(text: str) -> str:
-    """Return the text with a capital, as a sentence begins; what is typed stays as it is typed."""
-    first = text.split(maxsplit=1)[0]
-    return text if first in _COMMANDS or not first.rstrip(",:;").isalpha() else f"{text[0].upper()}{text[1:]}"
+def capitalised(text: str) -> str:
+    """Return the text with a capital letter, as a sentence begins; a command, a quotation or a cell stays as it is.
+
+    >>> capitalised("there is no file"), capitalised("xlmc new lists them"), capitalised("'road friction' is frozen")
+    ('There is no file', 'xlmc new lists them', "'road friction' is frozen")
+    """
+    first = text.split(maxsplit=1)[0] if text.strip() else ""
+    return text if first in _COMMANDS or not re.sub("[-',:;]", "", first).isalpha() else f"{text[0].upper()}{text[1:]}"
 
 
 class XlmcError(Exception):
     """A message for the person at the keyboard: where it is, what is wrong, what to do.
+
+    As text both sentences begin with a capital letter; `message` stays as given, for use within another sentence.
 
     Args:
         message: what is wrong, one sentence without a full stop.
@@ -105,8 +113,8 @@ class XlmcError(Exception):
 
     def __str__(self) -> str:
         start = f"{shortened(self.where)}: " if self.where else ""
-        spoken = sentence(f"{start}{shortened(self.message)}")
-        return sentence(f"{spoken} {_begun(self.hint)}") if self.hint else spoken
+        spoken = sentence(f"{start}{shortened(capitalised(self.message))}")
+        return sentence(f"{spoken} {capitalised(self.hint)}") if self.hint else spoken
 
 
 def shortened(text: str) -> str:
@@ -181,6 +189,9 @@ class Notice:
 
     message: str
     where: object = None
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "message", capitalised(self.message))
 
     def __str__(self) -> str:
         spoken = shortened(self.message)

@@ -13,7 +13,7 @@ import click
 
 from xlmc.cli.options import FilePath, functions_option
 from xlmc.cli.terminal import paragraph, say
-from xlmc.errors import sentence
+from xlmc.errors import capitalised, sentence
 
 if TYPE_CHECKING:
     from xlmc.excel.own_functions import OwnFunctions
@@ -92,7 +92,7 @@ def _show_base_case(model: CompiledModel) -> list[str]:
 
     failing = [check.fault for check in base_checks(model) if check.holds is False]
     errors = errors_at_base(model)
-    lines = [sentence(f"{fault[0].upper()}{fault[1:]}") for fault in failing]
+    lines = [sentence(capitalised(fault)) for fault in failing]
     lines += _error_lines(model, errors)
     if lines:
         say(f"{model.workbook.name}: at the base case, with every assumption at the value in its cell\n")
@@ -234,13 +234,13 @@ def show_first(run: RunResult) -> None:
     name = run.model.workbook.name
     _show_lines(f"{name}: checks that fail", failing_lines(run))
     conflict = [] if run.agreement is None or not run.agreement.conflicts else [run.agreement.sentence]
-    _show_lines(f"{name}: evidence that contradicts", [f"{each[0].upper()}{each[1:]}." for each in conflict])
+    _show_lines(f"{name}: evidence that contradicts", [f"{capitalised(each)}." for each in conflict])
     _show_lines(f"{name}: trials lost to errors", [f"{sentence}." for sentence in lost_sentences(run)])
 
 
 def failing_lines(run: RunResult) -> list[str]:
     """One line for each check that fails, at the base case or in too many accepted trials."""
-    return [sentence(f"{warning[0].upper()}{warning[1:]}") for check in run.checks for warning in check.warnings]
+    return [sentence(capitalised(warning)) for check in run.checks for warning in check.warnings]
 
 
 def _show_lines(title: str, lines: Sequence[str]) -> None:

@@ -8,6 +8,8 @@ from typing import Final
 
 import click
 
+from xlmc.errors import capitalised, sentence
+
 __all__ = ["did_you_mean", "mistake"]
 
 _EXTRA: Final = re.compile(r"unexpected extra arguments? \((.*)\)")
@@ -16,6 +18,10 @@ _EXTRA: Final = re.compile(r"unexpected extra arguments? \((.*)\)")
 
 def mistake(error: click.ClickException) -> str:
     """Return the line for a mistake that click has found."""
+    return capitalised(_line(error))
+
+
+def _line(error: click.ClickException) -> str:
     context = getattr(error, "ctx", None)
     command = context.command_path if context is not None else "xlmc"
     match error:
@@ -26,11 +32,11 @@ def mistake(error: click.ClickException) -> str:
         case click.MissingParameter() if context is not None and error.param is not None:
             return f"{_name(error.param)} is missing. Type: {_usage(context)}"
         case click.BadParameter() if error.param is not None:
-            return f"{_name(error.param)}: {_sentence(error.message)}"
+            return f"{_name(error.param)}: {sentence(error.message)}"
         case click.UsageError() if context is not None and (extra := _EXTRA.search(error.message)):
             return f"{extra[1]!r} does not belong here. Type: {_usage(context)}"
         case _:
-            return _sentence(error.format_message()) + (_see(command) if context is not None else "")
+            return sentence(error.format_message()) + (_see(command) if context is not None else "")
 
 
 def _usage(context: click.Context) -> str:
@@ -44,10 +50,6 @@ def _name(param: click.Parameter) -> str:
     if isinstance(param, click.Option):
         return max(param.opts, key=len)
     return (param.metavar or (param.name or "").upper()).strip("[]")
-
-
-def _sentence(text: str) -> str:
-    return text if text.endswith((".", "?", "!")) else f"{text}."
 
 
 def _see(command: str) -> str:

@@ -201,13 +201,14 @@ def _show_sentences(run: RunResult) -> None:
 def _show_evidence(run: RunResult) -> None:
     """Print whether the evidence agrees, and what each item moves; nothing where none is used."""
     from xlmc.cli.printing import table
+    from xlmc.errors import capitalised
     from xlmc.outputs.evidence_tables import ITEM_HEADS, item_rows, move_rows, trials_sentence
 
     found = run.agreement
     if found is None:
         return
     table("Evidence", ITEM_HEADS, item_rows(found), right=range(2, 7))
-    sentences = [] if found.sentence in found.remarks else [f"{found.sentence[0].upper()}{found.sentence[1:]}."]
+    sentences = [] if found.sentence in found.remarks else [f"{capitalised(found.sentence)}."]
     say(paragraph(" ".join([*sentences, trials_sentence(found)])) + "\n")  # remarks come with the other notices
     names = list(found.found.forecasts)[:_MOST_MOVED]
     heads = ("Means with", "Effective trials", *names)

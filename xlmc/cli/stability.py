@@ -14,6 +14,7 @@ from xlmc.cli.options import FilePath, WholeNumber, functions_option, jobs_optio
 from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
+from xlmc.errors import capitalised
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.stability import CellDigits, Finding, Stability
@@ -144,7 +145,7 @@ def _finding_heading(number: int, finding: Finding, formula: str) -> str:
 
 
 def _finding_sentences(finding: Finding) -> Iterator[str]:
-    yield from (f"{text[0].upper()}{text[1:]}." for text in (finding.what, finding.effect))
+    yield from (f"{capitalised(text)}." for text in (finding.what, finding.effect))
     if finding.where:
         yield f"Where: {'; '.join(map(str, finding.where))}"
 

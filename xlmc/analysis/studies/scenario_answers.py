@@ -195,8 +195,8 @@ def model_of(model: CompiledModel, scenario: Scenario | str) -> CompiledModel:
     try:
         found = applied(model, scenario.changes)
         if [each.name for each in found.forecasts] != [each.name for each in model.forecasts]:
-            hint = "a scenario asks for the same forecasts as the workbook: change something else"
-            raise DefinitionError("other forecasts would be asked for", hint=hint)
+            hint = "a scenario has the same forecasts as the workbook: change other cells"
+            raise DefinitionError("the change alters which forecasts there are", hint=hint)
         return found
     except XlmcError as error:
         message = f"In the scenario {scenario.name!r}: {error.message}"

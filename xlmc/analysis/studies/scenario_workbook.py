@@ -187,7 +187,7 @@ def _refuse_difference(wanted: CompiledModel, found: CompiledModel, scenario: Sc
         WorkbookError: it does.
     """
     if _definitions(wanted) != _definitions(found):
-        message = f"the workbook would not say what the scenario {scenario.name!r} says"
+        message = f"the workbook would not hold the changes of the scenario {scenario.name!r}"
         raise WorkbookError(message, where=wanted.path, hint="Nothing was written; please report this")
 
 

@@ -254,7 +254,7 @@ class _Screen:
         self._valueless = tuple(f.name for f in wanted if f not in self._judged)
         if not self._judged:
             message = "no forecast has an answer in two accepted trials or more"
-            raise SimulationError(message, hint="xlmc simulate tells in which cells the trials are lost to errors")
+            raise SimulationError(message, hint="xlmc simulate says in which cells the trials are lost to errors")
         self._shares = {name: named_shares(each, each) for name, each in self._accepted.items()}
         if all(self._shares[f.name] for f in self._judged):
             stated.refuse_for_shares(self._judged)

@@ -35,6 +35,7 @@ Arguments = tuple[ir.Expression, ...]
 
 _NOT_ONE_CELL: Final = ir.ErrorLiteral(ErrorCode.VALUE)
 _CHOOSING: Final = ("IF", "CHOOSE")
+_INSTEAD: Final = "INDEX or a lookup function does the same with arguments that vary"
 
 
 class NotYetNeeded(Exception):  # noqa: N818 - it asks for more; nothing is wrong
@@ -94,7 +95,10 @@ def _combine(
         raise FormulaError("an end of a range must be fixed: no value that varies may change it", hint=hint)
     a, b = ([area.whole for area in areas] if areas else [] for areas in found)
     if len(a) != 1 or len(b) != 1 or a[0].sheet != b[0].sheet:
-        raise FormulaError(f"the two sides of {operator!r} are not areas of one sheet")
+        raise FormulaError(
+            f"the two sides of {operator!r} are not areas of one sheet",
+            hint="give each side one range of the same sheet",
+        )
     tops, lefts = (a[0].top, b[0].top), (a[0].left, b[0].left)
     bottoms, rights = (a[0].bottom, b[0].bottom), (a[0].right, b[0].right)
     if operator == " ":
@@ -173,11 +177,10 @@ def _known_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, fun
         return None
     node = lowering.lower(tree, scope.inside())
     if lowering.dag.sizes[node] not in (None, (1, 1)) and scope.array:
-        raise FormulaError(f"{function} leads to several ranges at once")
+        raise FormulaError(f"{function} leads to several ranges at once", hint="give it single values")
     known = lowering.lookup_constant(lowering.first_cell(node))
     if known is None:
-        hint = "INDEX or a lookup function does the same with arguments that vary"
-        raise FormulaError(f"{function} depends on a value that varies; where it leads must be fixed", hint=hint)
+        raise FormulaError(f"{function} depends on a value that varies; where it leads must be fixed", hint=_INSTEAD)
     numbers, errors = known.to_numbers()
     _stop_at_error(errors)
     return float(numbers[0])
@@ -186,7 +189,7 @@ def _known_number(lowering: TreeLowering, tree: ir.Expression, scope: Scope, fun
 def _offset(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
     base = areas_of(lowering, arguments[0], scope.pointed_at())
     if base is None or len(base) != 1:
-        raise FormulaError("OFFSET starts from a reference to one area")
+        raise FormulaError("OFFSET starts from a reference to one area", hint="name one range")
     numbers = [_known_number(lowering, argument, scope, "OFFSET") for argument in arguments[1:]]
     down, right = int(numbers[0] or 0), int(numbers[1] or 0)
     height = numbers[2] if len(numbers) > 2 and numbers[2] is not None else base[0].whole.rows
@@ -217,7 +220,7 @@ def _on_the_sheet(area: Area) -> Area:
 def _indirect(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> list[Area] | None:
     known = lowering.lookup_constant(lowering.first_cell(lowering.lower(arguments[0], scope.inside())))
     if known is None:
-        raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
+        raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed", hint=_INSTEAD)
     texts, errors = known.to_texts()
     _stop_at_error(errors)
     a1 = len(arguments) < 2 or _is_true(lowering, arguments[1], scope)
@@ -233,7 +236,7 @@ def _is_true(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
     """Return a known logical argument."""
     known = lowering.lookup_constant(lowering.first_cell(lowering.lower(tree, scope.inside())))
     if known is None:
-        raise FormulaError("INDIRECT depends on a value that varies; where it leads must be fixed")
+        raise FormulaError("whether INDIRECT reads A1 or R1C1 must not vary", hint="type TRUE or FALSE")
     logicals, errors = known.to_logicals()
     _stop_at_error(errors)
     return bool(logicals[0])

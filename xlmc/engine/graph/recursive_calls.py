@@ -355,7 +355,7 @@ def join_trials(n: int, parts: list[tuple[Trials, Value]]) -> Value:
         return parts[0][1]
     sizes = {value.shape[1:] for _, value in parts}
     if len(sizes) > 1 or any(isinstance(value, Ragged) for _, value in parts):
-        raise FormulaError("a LAMBDA that calls itself gives arrays of several sizes")
+        raise FormulaError("a LAMBDA that calls itself gives arrays of several sizes", hint="give single values")
     size = (n, *next(iter(sizes), ()))
     has_texts = any(value.texts is not None for _, value in parts)
     out = Value(np.zeros(size), np.full(size, BLANK, np.uint8), np.full(size, "", object) if has_texts else None)

@@ -100,7 +100,7 @@ def _find_area(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> Ar
         return Area(cell.sheet, cell.row, cell.column, cell.row, cell.column)
     areas = areas_of(lowering, arguments[0], scope.pointed_at())
     if areas is None:
-        raise FormulaError("a reference is needed here")
+        raise FormulaError("a reference is needed here", hint="name a cell or a range")
     return areas[0]
 
 
@@ -179,7 +179,9 @@ def _sheet_name(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> s
     if arguments and areas_of(lowering, arguments[0], scope.pointed_at()) is None:
         known = lowering.lookup_constant(lowering.lower(arguments[0], scope))
         if known is None:
-            raise FormulaError("SHEET needs a reference, or the name of a sheet that does not vary")
+            raise FormulaError(
+                "SHEET needs a reference, or the name of a sheet that does not vary", hint="name one of its cells"
+            )
         return str(known.to_texts()[0][0])
     return _find_area(lowering, arguments, scope).sheet
 
@@ -194,7 +196,7 @@ def _sheets(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int |
 def _cell(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     known = lowering.lookup_constant(lowering.lower(arguments[0], scope))
     if known is None:
-        raise FormulaError("the first argument of CELL must not vary")
+        raise FormulaError("the first argument of CELL must not vary", hint="type it")
     what = str(known.to_texts()[0][0]).casefold()
     area = _find_area(lowering, arguments[1:], scope)
     cell = Cell(area.sheet, area.top, area.left)

@@ -384,7 +384,7 @@ def find_callee(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> Ca
             known = lowering.lookup_constant(lowering.lower(index, scope))
             if known is not None and known.plain and 1 <= known.numbers[0] < len(options) + 1:
                 return find_callee(lowering, options[int(known.numbers[0]) - 1], scope)
-    raise FormulaError("what is called here is no LAMBDA")
+    raise FormulaError("what is called here is not a LAMBDA")
 
 
 def _of_variable(lowering: TreeLowering, name: str, scope: Scope) -> Callee:
@@ -393,7 +393,7 @@ def _of_variable(lowering: TreeLowering, name: str, scope: Scope) -> Callee:
         return found
     if isinstance(found, Thunk):
         return _of_thunk(lowering, found)
-    raise FormulaError("what is called here is no LAMBDA")
+    raise FormulaError("what is called here is not a LAMBDA")
 
 
 def _of_thunk(lowering: TreeLowering, thunk: Thunk) -> Callee:

@@ -58,6 +58,8 @@ def without_totals(name: str) -> Callable[[TreeLowering, Arguments, Scope], int 
 _OF_A_RANK: Final = range(14, 20)
 """The numbers of AGGREGATE's functions, such as LARGE, that take a rank behind their array."""
 
+_TYPE: Final = "type the numbers that say what is left out"
+
 
 def _is_ranked(lowering: TreeLowering, number: int) -> bool | None:
     """Whether AGGREGATE's function takes a rank; None if it varies."""
@@ -107,7 +109,7 @@ def _hidden_rows(lowering: TreeLowering, area: Area, skips: Skips | None) -> fro
     if sheet is None or not rows:
         return frozenset()
     if skips is None:
-        raise FormulaError("rows of the range are hidden, and whether the total leaves them out varies")
+        raise FormulaError("rows of the range are hidden, and whether the total leaves them out varies", hint=_TYPE)
     if skips.hidden:
         return rows
     return rows & lowering.graph.workbook.filtered_rows(sheet) if skips.filtered else frozenset()
@@ -125,7 +127,7 @@ def _range_that_counts(lowering: TreeLowering, area: Area, skips: Skips | None, 
     def node(cell: Cell) -> int:
         total = nested is not False and _TOTAL.search(lowering.graph.text(cell)) is not None
         if total and nested is None:
-            raise FormulaError(f"{cell} is a total itself, and whether AGGREGATE leaves it out varies")
+            raise FormulaError(f"{cell} is a total itself, and whether AGGREGATE leaves it out varies", hint=_TYPE)
         return lowering.dag.constant(constant(None)) if total or cell.row in hidden_rows else lowering.cell(cell)
 
     rows, columns = range(area.top, area.bottom + 1), range(area.left, area.right + 1)

@@ -150,7 +150,8 @@ def table_rows(table: Table, items: tuple[str, ...], host: Cell) -> tuple[int, i
     }
     unknown = [item for item in items if item not in spans]
     if unknown:
-        raise FormulaError(f"a table has no part {unknown[0]!r}")
+        hint = "use #All, #Data, #Headers, #Totals or #This Row"
+        raise FormulaError(f"a table has no part {unknown[0]!r}", hint=hint)
     named = [spans[item] for item in items or ("#data",)]
     top, bottom = min(span[0] for span in named), max(span[1] for span in named)
     return (top, bottom) if top <= bottom else None
@@ -178,7 +179,7 @@ def meant_book(workbook: Workbook, book: str | None, around: str | None) -> str 
     if book == _THIS:
         return None
     if book not in workbook.links:
-        raise FormulaError("refers to another workbook", hint=COPY)
+        raise FormulaError("the formula refers to another workbook", hint=COPY)
     return book
 
 
@@ -192,7 +193,7 @@ def linked_sheet(workbook: Workbook, book: str, name: str | None, host: Cell) ->
     sheets = {title.casefold(): title for title in linked.sheets}
     found = sheets.get((host.sheet if name is None else f"{book}{name}").casefold())
     if found is None:
-        raise FormulaError(f"refers to {_name_of(linked)}, of which no values are stored", hint=COPY)
+        raise FormulaError(f"the formula refers to {_name_of(linked)}, of which no values are stored", hint=COPY)
     return found
 
 
@@ -208,7 +209,7 @@ def linked_name(workbook: Workbook, book: str, name: ir.Name) -> DefinedName:
     only = next(iter(named.values())) if len(named) == 1 and scope is None else None
     found = named.get(scope) or named.get(None) or only
     if found is None:
-        raise FormulaError(f"refers to {name.name!r} of {_name_of(linked)}, which is not stored", hint=COPY)
+        raise FormulaError(f"the formula refers to {name.name!r} of {_name_of(linked)}, which is not stored", hint=COPY)
     return found
 
 

@@ -214,7 +214,7 @@ class Resolver:
         book = meant_book(self.workbook, tree.book, self._linked)
         if tree.last_sheet is not None:
             if book is not None:
-                raise FormulaError("refers to several sheets of another workbook", hint=COPY)
+                raise FormulaError("the formula refers to several sheets of another workbook", hint=COPY)
             return self._over_sheets(tree, host, origin)
         sheet = self._sheet(tree.sheet, host) if book is None else linked_sheet(self.workbook, book, tree.sheet, host)
         if book is not None and sheet in self.workbook.links[book].broken:
@@ -239,7 +239,9 @@ class Resolver:
         """Resolve a name of another workbook, by what it stood for when Excel last read that."""
         found = linked_name(self.workbook, book, name)
         if self._linked is not None:
-            raise FormulaError(f"refers to {name.name!r} of another workbook, which stands for another name", hint=COPY)
+            raise FormulaError(
+                f"the formula refers to {name.name!r} of another workbook, which stands for another name", hint=COPY
+            )
         variables, self._variables, self._linked = self._variables, frozenset(), book
         try:
             return self._resolve(parse(found.text), Cell(found.sheet or book, 1, 1), (1, 1))
@@ -324,7 +326,9 @@ class Resolver:
     def _again(self, name: str, key: str, scope: str) -> ir.Expression:
         """Resolve a name within its own definition: a LAMBDA may call itself, by whatever way round."""
         if not stands_for_function(self.workbook, name, scope):
-            raise FormulaError(f"the name {name!r} is defined by itself")
+            raise FormulaError(
+                f"the name {name!r} is defined by itself", hint="correct it under Formulas ▸ Name Manager"
+            )
         self._recursive.add(key)
         return ir.Variable(key)
 
@@ -341,7 +345,9 @@ class Resolver:
         if name is None:
             around = [table for table in self.workbook.tables if host in table.area]
             if not around:
-                raise FormulaError("a table's column is named without its table, outside any table")
+                raise FormulaError(
+                    "a table's column is named without its table, outside any table", hint="write the table before it"
+                )
             return around[0]
         found = self.workbook.table_named(name)
         if found is None:

@@ -95,7 +95,7 @@ class _Builder(ElementTree.TreeBuilder):
 
 
 def _refuse(*_: object) -> NoReturn:
-    raise WorkbookError("it declares a document type or entities, which no workbook needs")
+    raise WorkbookError("a document type or entities are declared, which no workbook needs")
 
 
 @contextmanager

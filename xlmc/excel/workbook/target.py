@@ -212,7 +212,9 @@ def refuse_other_ending(path: Path, endings: Sequence[str], noun: str = "") -> N
     if noun:
         hint = f"Name it '{label(path.stem) or 'results'}{endings[0]}'"
         raise WorkbookError(f"{noun} must end in {' or '.join(endings)}", where=path, hint=hint)
-    message = f"the ending {label(ending)} is none of a file that this command writes" if ending else "it has no ending"
+    message = (
+        f"this command writes no file that ends in {label(ending)}" if ending else "the name of the file has no ending"
+    )
     raise WorkbookError(message, where=path, hint=f"The ending says what is written: {', '.join(endings)}")
 
 

@@ -109,7 +109,9 @@ def read_value_rows(path: Path, book: Workbook) -> ValueRows:
             place, value = row[:2]
             cell, typed = _typed(path, number, book, place, value)
             if cell in listed:
-                raise WorkbookError(f"line {number}: {cell} stands here a second time", where=path)
+                raise WorkbookError(
+                    f"line {number}: {cell} stands here a second time", where=path, hint="Leave one out"
+                )
             listed[cell] = typed
         return ValueRows((), ({},), (listed,))
     cells = {at: _typed(path, 1, book, heading, "")[0] for at, heading in _cells_of(headings)}
@@ -122,7 +124,7 @@ def read_value_rows(path: Path, book: Workbook) -> ValueRows:
         rows.append({cell: _typed(path, number, book, cell, row[at])[1] for at, cell in cells.items()})
         given.append({heading: rows[-1][cells[at]] if at in cells else row[at] for at, heading in enumerate(headings)})
     if not rows:
-        raise WorkbookError("the file holds headings, and no row of values", where=path)
+        raise WorkbookError("the file holds headings, and no row of values", where=path, hint="Add a row of values")
     return ValueRows(tuple(headings), tuple(given), tuple(rows))
 
 
@@ -165,15 +167,21 @@ def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
         hint = "Save it as CSV UTF-8 (in Excel: File, Save As)"
         raise WorkbookError("the file is not text in UTF-8", where=path, hint=hint) from None
     except OSError as error:
-        raise WorkbookError(f"the file cannot be read ({error.strerror or error})", where=path) from error
+        message, hint = (
+            f"the file cannot be read ({error.strerror or error})",
+            "Check its name and that you may read it",
+        )
+        raise WorkbookError(message, where=path, hint=hint) from error
     first = text.partition("\n")[0]
     mark = max(",;\t", key=first.count)
     reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark)
     try:
         for row in reader:
             if reader.line_num > _MOST_ROWS:
-                raise WorkbookError(f"the file has more than {_MOST_ROWS:,} lines", where=path)
+                hint = "Split it into several files"
+                raise WorkbookError(f"the file has more than {_MOST_ROWS:,} lines", where=path, hint=hint)
             if any(cell.strip() for cell in row):
                 yield reader.line_num, row
     except csv.Error as error:
-        raise WorkbookError(f"line {reader.line_num} cannot be read ({error})", where=path) from error
+        message = f"line {reader.line_num} cannot be read ({error})"
+        raise WorkbookError(message, where=path, hint="Correct it, or save the file as CSV again") from error

@@ -212,7 +212,7 @@ def _publish(temporary: Path, target: Path, check: Callable[[], None] | None) ->
         except FileExistsError:  # it appeared this moment: whose is it?
             continue
         return
-    raise TakenError("other programs write this file all the time", hint="Name another file")
+    raise TakenError("other programs keep writing this file", hint="Name another file")
 
 
 def _name_new(temporary: Path, target: Path) -> None:

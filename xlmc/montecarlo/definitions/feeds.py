@@ -68,7 +68,7 @@ def read_feeds(given: Iterable[str] | Mapping[str, str]) -> tuple[Feed, ...]:
     """Read feeds as they are typed, or as Python gives them: `{"Assumption": "other.xlsx!Forecast"}`.
 
     Raises:
-        SimulationError: one is not written as one, or an assumption is fed twice.
+        SimulationError: one cannot be read, or an assumption is fed twice.
 
     >>> read_feeds(["Impact speed=momentum.xlsx!Vehicle 1 impact speed"])[0].source
     'momentum.xlsx'
@@ -93,7 +93,7 @@ def _feed(mine: str, theirs: str) -> Feed:
     own, other = _IN_BOOK.fullmatch(mine.strip()), _IN_BOOK.fullmatch(theirs.strip())
     book, assumption = ("", mine.strip()) if own is None else (own["book"].strip(), own["name"].strip())
     if other is None or not assumption or not other["name"].strip():
-        raise SimulationError(f"the feed {f'{mine}={theirs}'!r} is not written as one", hint=_FORM)
+        raise SimulationError(f"the feed {f'{mine}={theirs}'!r} cannot be read", hint=_FORM)
     if _SECOND.search(other["name"]):
         message = f"the feed {f'{mine}={theirs}'!r} holds two"
         raise SimulationError(message, hint="give --feed once for each (in Python: an entry of the dict for each)")

@@ -277,7 +277,7 @@ class Stopping:
 
     def __post_init__(self) -> None:
         if self.forecasts and not (self.goal and self.goal.of_forecasts):
-            message = "forecasts to look at are named, but not what for"
+            message = "forecasts are named, and no precision or stable digits are asked for of them"
             raise SimulationError(message, hint="Ask for a precision or for stable digits too, or name no forecasts")
 
     @property
@@ -320,7 +320,7 @@ def stopping(
     given = {name: value for name, value in goals.items() if value is not None}
     found = [goal.of(given) for goal in GOALS.values() if any(option.name in given for option in goal.options)]
     if rare is not None and rare not in RARE:
-        message = f"{rare!r} is not a way to look for rare trials"
+        message = f"{rare!r} is not a setting of rare"
         raise SimulationError(message, hint=f"Choose one of {', '.join(RARE)}")
     named = (forecasts,) if isinstance(forecasts, str) else tuple(forecasts)
     return Stopping(only_one(found), named, None if time_limit is None else as_seconds(time_limit), rare)

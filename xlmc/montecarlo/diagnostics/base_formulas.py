@@ -57,5 +57,5 @@ def _with_bases(host: Cell, tree: ir.Expression, bases: Mapping[Cell, float | No
     found = substitute(tree, change)
     if unknown:
         hint = "Let Excel calculate the workbook, or add RiskStatic with the value"
-        return FormulaError("draws at random, and its base case is not known", where=host, hint=hint)
+        return FormulaError("the formula draws at random, and its base case is not known", where=host, hint=hint)
     return found

@@ -33,7 +33,7 @@ def example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
     more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
     begins = "source still says" if len(found) == 1 else f"{len(found)} sources still say"
     message = f'{begins} "Example": {named}{more}. Write there what each number of this case rests on'
-    return [Notice(message[0].upper() + message[1:], found[0][1])]
+    return [Notice(message, found[0][1])]
 
 
 def heavy_notices(heavy: Iterable[Assumption]) -> Iterator[Notice]:

@@ -283,9 +283,9 @@ class RunResult:
         if not self.plan.replicates and self.has_few:
             few = f"only {_trials(self.accepted)} accepted" if self.weighting is None else ""
             few = few or f"the accepted trials say as much as {effective} trials of equal weight"
-            found.append(Notice(f"{few[0].upper()}{few[1:]}. {_OF_FEW}"))
+            found.append(Notice(f"{few}. {_OF_FEW}"))
         samples = {name: result.sample for name, result in self.results.items() if name not in self.labels}
-        found += [Notice(f"{each[0].upper()}{each[1:]}") for each in self.agreement.remarks] if self.agreement else []
+        found += [Notice(each) for each in self.agreement.remarks] if self.agreement else []
         found += direction_notices(each for name, each in self.results.items() if name not in self.labels)
         found += unsettled_notices(self.model, self.prior)
         return (*found, *tail_notices(samples, METHODS[self.plan.method].name))

@@ -21,6 +21,7 @@ from xlmc.analysis.results.statements.in_words import (
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.measures import noise
+from xlmc.errors import capitalised
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.diagnostics.checking import checks_sentence
 from xlmc.montecarlo.distributions.parameters import show
@@ -264,8 +265,8 @@ def _evidence(material: Material) -> Iterator[Block]:
     if found is None:
         return
     look = "warning" if found.conflicts else "text"
-    yield Paragraph(f"{found.sentence[0].upper()}{found.sentence[1:]}.", look)
-    remarks = tuple(f"{each[0].upper()}{each[1:]}." for each in found.remarks if each != found.sentence)
+    yield Paragraph(f"{capitalised(found.sentence)}.", look)
+    remarks = tuple(f"{capitalised(each)}." for each in found.remarks if each != found.sentence)
     if remarks:
         yield Bullets(remarks)
     widths = (1.7, 2.2, 1.3, 1.3, 1.3, 1.1, 0.7, 1.3)

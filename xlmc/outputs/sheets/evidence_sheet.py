@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import evidence_text
+from xlmc.errors import capitalised
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.diagnostics.agreement import Verdict
 from xlmc.outputs.evidence_tables import ITEM_HEADS, MEANING, MOVES_MEANING, trials_sentence
@@ -37,11 +38,11 @@ def write_agreement(page: Page, simulation: RunResult) -> None:
     """Write all but the title: onto the sheet, or onto the page for a browser."""
     found = simulation.agreement
     if found is not None:
-        said = f"{found.sentence[0].upper()}{found.sentence[1:]}."
+        said = f"{capitalised(found.sentence)}."
         page.wide(said, "warning" if found.verdict in _BAD else "paragraph", _LAST)
         for remark in found.remarks:
             if remark != found.sentence:
-                page.wide(f"{remark[0].upper()}{remark[1:]}.", "paragraph", _LAST)
+                page.wide(f"{capitalised(remark)}.", "paragraph", _LAST)
         _write_items(page, found)
         _write_moves(page, simulation, found)
     _write_sources(page, simulation)

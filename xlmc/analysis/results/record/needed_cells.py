@@ -17,7 +17,7 @@ import zlib
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.record.record_parts import Entry, Record, RecordTable, Section
+from xlmc.analysis.results.record.record_parts import EDITED, Entry, Record, RecordTable, Section
 from xlmc.analysis.results.statements.in_words import number_text
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.address import Area, Cell, host_of, parse_address, quote_sheet
@@ -175,7 +175,7 @@ def recorded_cells(record: Record) -> dict[Cell, str]:
     if len(contents) != count or hashlib.sha256(_json(contents)).hexdigest() != expected:
         raise WorkbookError(
             "the cells in the record are not those that were written there",
-            hint="The record was edited: use a copy of the result workbook as xlmc wrote it",
+            hint=EDITED,
         )
     return {_cell(address): text for address, text in contents.items()}
 
@@ -197,7 +197,7 @@ def _unpack(record: Record) -> dict[str, str]:
         packed = stream.decompress(base64.b64decode("".join(map(str, pieces)), validate=True), _MOST_BYTES)
         found = json.loads(packed or b"{}")
     except (binascii.Error, zlib.error, ValueError) as error:
-        raise WorkbookError("the cells in the record cannot be read", hint="The record was edited") from error
+        raise WorkbookError("the cells in the record cannot be read", hint=EDITED) from error
     return {str(address): str(text) for address, text in dict(found).items()}
 
 
@@ -207,7 +207,7 @@ def _cell(address: str) -> Cell:
     except ValueError:
         found = None
     if not isinstance(found, Cell):
-        raise WorkbookError(f"the record names the cell {address!r}", hint="The record was edited")
+        raise WorkbookError(f"the record names the cell {address!r}, which is not one", hint=EDITED)
     return found
 
 

@@ -14,7 +14,10 @@ from typing import Final
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.workbook.workbook import CellContent, Sheet, Workbook
 
-__all__ = ["Entry", "Record", "RecordTable", "Section", "Value", "read_record"]
+__all__ = ["EDITED", "Entry", "Record", "RecordTable", "Section", "Value", "read_record"]
+
+EDITED: Final = "The record was edited: use a copy of the result workbook as xlmc wrote it"
+"""What to do about a record that cannot be read."""
 
 Value = str | int | float | bool | None
 """A value in the record. It is None if there is none: no units, no cutoff, no trial to take a mean of."""

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterable, Iterator
 from dataclasses import astuple, fields
 from typing import TYPE_CHECKING, Any, Final, get_type_hints
 
-from xlmc.analysis.results.record.record_parts import Entry, Record, Section, Value
+from xlmc.analysis.results.record.record_parts import EDITED, Entry, Record, Section, Value
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.montecarlo.definitions.run_settings import ENDS, SETTINGS, Setting, Settings
 from xlmc.montecarlo.definitions.stopping import GOALS, Goal, Stopping, only_one
@@ -59,8 +59,7 @@ def recorded_settings(record: Record) -> Settings:
         ends = {name.removeprefix(ENDS): given.pop(name) for name in list(given) if name.startswith(ENDS)}
         return Settings(**given, stopping=Stopping(goal=only_one(goals), **ends))
     except (TypeError, ValueError, XlmcError) as error:
-        hint = "The record was edited: use a copy of the result workbook as xlmc wrote it"
-        raise WorkbookError(f"the settings in the record cannot be read ({error})", hint=hint) from error
+        raise WorkbookError(f"the settings in the record cannot be read ({error})", hint=EDITED) from error
 
 
 def _recorded(section: dict[str, Value]) -> Iterator[tuple[Setting, Any]]:

@@ -182,7 +182,7 @@ def _model_of(
     """
     name = Path(about.name).name
     if package.size(entry) > LIMITS.total:
-        raise WorkbookError(f"its workbook is larger than {LIMITS.total >> 20} MB", where=path, hint=AGAIN)
+        raise WorkbookError(f"the workbook in it is larger than {LIMITS.total >> 20} MB", where=path, hint=AGAIN)
     with package.reading(entry) as reader:
         data = reader.read()
     if hashlib.sha256(data).hexdigest() != about.sha256:

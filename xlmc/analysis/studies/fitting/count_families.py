@@ -56,7 +56,7 @@ def _binomial(x: Floats) -> Params:
     trials = float(
         _best_whole(lambda n: float(np.sum(_binomial_log(x, mean / n, n))), float(x[-1]), max(float(x[-1]), 1) * 1000)
     )
-    refuse(trials >= 999 * x[-1], "so many trials that it is a Poisson")
+    refuse(trials >= 999 * x[-1], "with this many trials use Poisson")
     return mean / trials, trials
 
 
@@ -107,7 +107,7 @@ def _negbin(x: Floats) -> Params:
         return float(np.sum(_negative_log(x + shape, shape / (shape + mean), shape)))
 
     shape = float(_best_whole(score, 1.0, _MOST))
-    refuse(shape > 0.99 * _MOST, "so many successes that it is a Poisson")
+    refuse(shape > 0.99 * _MOST, "with this many successes use Poisson")
     return shape / (shape + mean), shape
 
 

@@ -90,7 +90,7 @@ def _moments_of(model: CompiledModel, seed: int) -> Moments:
     varying = [index for index, (mean, _) in enumerate(found) if np.isnan(mean)]
     for index, assumption in enumerate(model.live):
         if index not in varying and not np.isfinite(found[index]).all():
-            message = f"{assumption.name} has no finite mean and standard deviation to start from"
+            message = f"{assumption.name!r} has no finite mean and standard deviation to start from"
             raise SimulationError(message, hint="give it cutoffs, or use a method that draws")
     correlations = np.eye(len(model.live))
     remarks = []

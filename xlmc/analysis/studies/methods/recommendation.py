@@ -19,6 +19,7 @@ from xlmc.analysis.studies.methods.curve import Curve
 from xlmc.analysis.studies.methods.need import ENGINE_READY, NO_TIME, Choice, Need, Shortfall, choice, shortfall
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO, Sampled
 from xlmc.analysis.studies.methods.study import Study
+from xlmc.errors import capitalised
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
@@ -301,7 +302,7 @@ def _missed_text(study: Study, curve: Curve, found: Shortfall) -> str:
     parts = parts_of(study, found)
     if parts is None:
         return (
-            f"{text}. {seen[0].upper()}{seen[1:]}; and {why}. No answer without filters is known that would tell the "
+            f"{text}. {capitalised(seen)}; and {why}. No answer without filters is known that would tell the "
             "two parts from each other."
         )
 

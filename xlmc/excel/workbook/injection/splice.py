@@ -83,7 +83,7 @@ def parse_spans(xml: bytes, part: str) -> Element:
 
     def start(name: str, attributes: dict[str, str]) -> None:
         if len(open_elements) > _DEEPEST:
-            raise WorkbookError("its elements nest too deep")
+            raise WorkbookError("elements nest too deep")
         at = parser.CurrentByteIndex
         match = _START_TAG.match(xml, at)
         assert match is not None  # expat has just read it

@@ -73,7 +73,7 @@ def _goal(asked: Precision) -> Goal:
     """
     widths = [(width, of) for width, of in ((asked.absolute, False), (asked.relative, True)) if width is not None]
     if len(widths) != 1:
-        raise SimulationError("it says neither of an absolute and a relative width, or both")
+        raise SimulationError("it gives neither an absolute nor a relative width, or both")
     ((width, relative),) = widths
     return Goal(width, relative, asked.numbers)
 

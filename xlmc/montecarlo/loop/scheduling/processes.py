@@ -229,7 +229,7 @@ class WorkerProcess(Worker):
     def _ended(self) -> SimulationError:
         code = self._process.wait()
         hint = "It may have run out of memory: ask for fewer with -j"
-        return SimulationError(f"a process ended before its time (exit code {code})", hint=hint)
+        return SimulationError(f"a worker process ended unexpectedly (exit code {code})", hint=hint)
 
     def end(self) -> None:
         """Stop the process, whatever it is doing."""

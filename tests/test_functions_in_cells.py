@@ -385,7 +385,7 @@ def test_draws_that_nothing_needs_are_told_of_together(model):
     cells = {f"A{i}": "=RAND()" for i in range(1, 6)} | {"B1": "=RiskOutput()+A1"}
     notices = model(cells).notices
     assert [(str(n.where), n.message) for n in notices] == [
-        ("S!A2#1", "no forecast or filter needs 4 draws in cells, of which this is the first")
+        ("S!A2#1", "No forecast or filter needs 4 draws in cells, of which this is the first")
     ]
 
 
@@ -444,8 +444,8 @@ def test_a_correlated_frequency(model):
     assert abs(found - 0.7) < 5 / math.sqrt(TRIALS)
     for formula, message in (
         ("=RiskCompound(RiskPoisson(50),1,RiskCorrmat(F1:G2,1))", "RiskCompound itself cannot be correlated"),
-        ("=RiskCompound(3,RiskNormal(1,1,RiskCorrmat(F1:G2,1)))", "the severity of RiskCompound cannot be correlated"),
-        ("=RiskCompound(RiskPoisson(5),2*RiskExpon(3))", "the severity of RiskCompound is a formula that draws"),
+        ("=RiskCompound(3,RiskNormal(1,1,RiskCorrmat(F1:G2,1)))", "The severity of RiskCompound cannot be correlated"),
+        ("=RiskCompound(RiskPoisson(5),2*RiskExpon(3))", "The severity of RiskCompound is a formula that draws"),
         ("=RiskCompound(RiskPoisson(5),RiskExpon(3),RiskTruncate(1,2))", "RiskCompound cannot be cut off"),
         ("=RiskCompound(RiskPoisson(5))", "RiskCompound has 1 arguments"),
         ("=RiskNormal(1,1,RiskLibrary(1,2))", "RiskLibrary replaces the distribution"),

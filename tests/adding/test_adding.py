@@ -121,6 +121,10 @@ for arguments in json.loads(sys.argv[1]):
     with contextlib.redirect_stdout(io.StringIO()) as out, contextlib.suppress(SystemExit):
         main() if arguments[0] == "xlmc" else runpy.run_path(arguments[0], run_name="__main__")
     said.append(out.getvalue())
+from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.definitions.run_settings import USUAL
+usual = RunOptions.repeating(USUAL, trials=9, by="trials", weighable=False)
+said.append(" ".join(usual.arguments(USUAL)))
 json.dump(said, sys.stdout)
 """
 """Several commands in one program, which starts once; a message or a warning would stand at stderr."""
@@ -128,7 +132,10 @@ json.dump(said, sys.stdout)
 
 @pytest.fixture(scope="module")
 def printed(enlarged, folder, run):
-    """What programs print: two runs, by the workbook's own settings and with `jit`; a replay; a help; two scripts."""
+    """What programs print: two runs, by the workbook's own settings and with `jit`; a replay; a help; two scripts.
+
+    Last come the arguments that repeat a run with the usual settings.
+    """
     commands = {
         "replay": ["xlmc", "replay", "slow.xlsx"],
         "help": ["xlmc", "simulate", "--help"],
@@ -142,7 +149,7 @@ def printed(enlarged, folder, run):
     commands = runs | commands
     done = run("-c", COMMANDS, json.dumps(list(commands.values())), folder=folder)
     assert done.returncode == 0
-    return dict(zip(commands, json.loads(done.stdout), strict=True))
+    return dict(zip([*commands, "usual"], json.loads(done.stdout), strict=True))
 
 
 @pytest.fixture(scope="module")
@@ -200,6 +207,8 @@ def test_the_setting_is_recorded_and_repeated(folder, printed):
     assert record["settings.purpose"] == "final"
     assert "--purpose final" in record["run.repeat"]
     assert "--purpose" in printed["help"]
+    assert printed["usual"].startswith("--trials 9")
+    assert "--purpose" not in printed["usual"]  # it is not set
 
 
 def test_the_sheet_holds_the_largest_values(folder, answers, trials):

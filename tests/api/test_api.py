@@ -126,8 +126,8 @@ def test_a_quantile_is_the_percentile_of_its_share(crash_run):
         (lambda run: run.model.simulate(jobs=True), "jobs is True"),
         (lambda run: run.model.simulate(until_accepted="all"), "'all' accepted trials were asked for"),
         (lambda run: run.plot(kind="pie"), "Choose one of histogram"),
-        (lambda run: run.plot("speed of light"), "there is no forecast 'speed of light'"),
-        (lambda run: run.model.with_(friction=1.0), "there is no assumption 'friction'"),
+        (lambda run: run.plot("speed of light"), "There is no forecast 'speed of light'"),
+        (lambda run: run.model.with_(friction=1.0), "There is no assumption 'friction'"),
         (lambda run: run.model.with_(nissan_weight="heavy"), "'nissan_weight' cannot be 'heavy'"),
     ],
 )

@@ -77,7 +77,7 @@ def test_the_copy_has_values_where_openpyxl_showed_none(xlmc, book):
     assert openpyxl.load_workbook("copy.xlsx")["S"]["A2"].font.bold
     assert outcome.code == 1
     assert "S!A6: the function NOSUCHFUNCTION is not known to xlmc; it has no value" in outcome.err
-    assert "S!A7: the formula depends on a cell that could not be computed" in outcome.err
+    assert "S!A7: The formula depends on a cell that could not be computed" in outcome.err
     assert "S!A8: NOW" in outcome.err
     assert excel.load("copy.xlsx").may_be_stale  # Excel is asked for what xlmc cannot compute
 
@@ -152,7 +152,7 @@ def test_what_cannot_be_computed_keeps_its_value_unless_a_change_reaches_it(xlmc
     assert outcome.code == 1
     assert [excel.load("a.xlsx")[f"S!A{row}"] for row in (2, 3, 4)] == [None, None, 14.0]
     assert "S!A2: the function NOSUCH is not known to xlmc; it has no value" in outcome.err
-    assert "S!A3: the formula depends on" in outcome.err
+    assert "S!A3: The formula depends on" in outcome.err
 
 
 @pytest.fixture
@@ -277,7 +277,7 @@ def test_an_error_value_is_typed_as_such(xlmc, book, tmp_path, typed, value, fou
 MISTAKES = {
     "a formula": (["--set", "S!A2=4"], ["S!A2", "holds a formula", "computed from"]),
     "an array formula": (["--set", "S!C2=4"], ["S!C1 fills the cell"]),
-    "no sheet": (["--set", "T!A2=4"], ["there is no sheet 'T'", "S, Other"]),
+    "no sheet": (["--set", "T!A2=4"], ["There is no sheet 'T'", "S, Other"]),
     "no cell": (["--set", "speed=4"], ["'speed' is no cell", "Sheet!Cell"]),
     "no equals sign": (["--set", "S!A1"], ["--set Inputs!B3=4.2"]),
     "a comma for decimals": (["--set", "S!A1=0,65"], ["0.65"]),
@@ -285,12 +285,12 @@ MISTAKES = {
     "an ending": (["-o", "copy.xlsm"], ["must end in .xlsx"]),
     "no cells": (["-o", "copy.csv"], ["--cells"]),
     "the book itself": (["-o", "book.xlsx"], ["book.xlsx"]),
-    "cells of no sheet": (["--cells", "T!A1"], ["--cells T!A1", "there is no sheet"]),
+    "cells of no sheet": (["--cells", "T!A1"], ["--cells T!A1", "There is no sheet"]),
     "json of nothing": (["--json"], ["--cells"]),
     "no file of values": (["--values", "none.csv", "--cells", "S!A2"], ["none.csv", "cannot be read"]),
     "rows into a copy": (
         ["--values", "two.csv", "-o", "copy.xlsx"],
-        ["a copy holds the values of one row", "copy.csv"],
+        ["A copy holds the values of one row", "copy.csv"],
     ),
     "a heading": (["--values", "heading.csv", "--cells", "S!A2"], ["line 1", "'Speed' is no cell", "#"]),
     "a value": (["--values", "comma.csv", "--cells", "S!A2"], ["line 2", "0.5"]),

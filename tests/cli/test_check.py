@@ -45,8 +45,8 @@ def test_lists_every_problem_with_its_cell(xlmc, spoiled):
     [
         ("=SQRTT(Inputs!B2)", "Did you mean SQRT?"),
         ("=SQRT(Inputs!B2", "cannot be read"),
-        ("=Inptus!B2", "there is no sheet 'Inptus'"),
-        ("=weihgt_1", "there is no name 'weihgt_1'"),
+        ("=Inptus!B2", "There is no sheet 'Inptus'"),
+        ("=weihgt_1", "There is no name 'weihgt_1'"),
         ("=Model!A1*2", "in a circle: Model!A1"),
         ("=SQRT(1,2)", "SQRT has 2 arguments; it takes 1"),
     ],

@@ -98,7 +98,7 @@ def test_a_run_in_which_nothing_varies_is_named(xlmc, failing, tmp_path):
     book.save(path)
     for command in ("check", "simulate"):
         assert (
-            "nothing varies: the range of every assumption that is drawn has a single value" in xlmc(command, path).err
+            "Nothing varies: the range of every assumption that is drawn has a single value" in xlmc(command, path).err
         )
     sheet["C3"], sheet["D3"], sheet["D13"] = 0.5, 2, "=B2*2"
     book.save(path)

@@ -98,14 +98,14 @@ def test_json(xlmc, books):
 def test_pairs_and_units(xlmc, tmp_path):
     first = book(tmp_path / "mph.xlsx", "=B2+B3")
     second = book(tmp_path / "metric.xlsx", "=(B2+B3)*1.609344", "km/h", "v")
-    assert "no forecast has the same name" in xlmc("compare", first, second).err
+    assert "No forecast has the same name" in xlmc("compare", first, second).err
     outcome = xlmc("compare", first, second, "--pair", "Speed=v", "--tolerance", "1e-6", *QUICK)
     assert outcome.code == 0
     assert "Speed (second converted)" in outcome.out
     third = book(tmp_path / "angle.xlsx", "=B2", "deg", "Speed")
     outcome = xlmc("compare", first, third)
     assert outcome.code == 2
-    assert "Inputs!F1: the forecasts 'Speed' and 'Speed' have the units 'mph' and 'deg'" in outcome.err
+    assert "Inputs!F1: The forecasts 'Speed' and 'Speed' have the units 'mph' and 'deg'" in outcome.err
 
 
 @pytest.mark.parametrize("pair", ["Speed", "=v", "Speed="])

@@ -59,7 +59,7 @@ def test_a_replay_asks_for_the_books_and_refuses_others(xlmc, fed, tmp_path):
     (tmp_path / "intersection-momentum.xlsx").rename(away)
     missing = xlmc("replay", "results.xlsx")
     assert missing.code == 2
-    assert "the workbook 'intersection-momentum.xlsx', which fed the run, is not beside it" in missing.err
+    assert "The workbook 'intersection-momentum.xlsx', which fed the run, is not beside it" in missing.err
     assert xlmc("replay", "results.xlsx", "--book", away).code == 0
     away.write_bytes(BOOKS["intersection"].read_bytes())
     other = xlmc("replay", "results.xlsx", "--book", away)
@@ -79,7 +79,7 @@ def test_python_gives_the_numbers_of_the_command(xlmc, fed, tmp_path):
 @pytest.mark.parametrize(
     ("typed", "message"),
     [
-        ("no equals sign", "is not written as one"),
+        ("no equals sign", "cannot be read"),
         ("x=missing.xlsx!y", "there is no such file"),
         ("x=skid-100-ft.xlsx!y", "skid-100-ft.xlsx: this is the workbook that is run, and it cannot feed itself"),
         ("x=./skid-100-ft.xlsx!y", "skid-100-ft.xlsx: this is the workbook that is run, and it cannot feed itself"),
@@ -103,7 +103,7 @@ def test_a_workbook_that_feeds_is_never_replaced(fed, tmp_path, ending):
         target = f"link{ending}"
     refused = fed("-o", target, "--overwrite")
     assert refused.code == 2
-    assert "this is the file that is read" in refused.err
+    assert "This is the file that is read" in refused.err
     assert (tmp_path / "intersection-momentum.xlsx").read_bytes() == before
 
 

@@ -114,14 +114,14 @@ def test_too_few_values_are_exit_code_1(xlmc, alone):
 @pytest.mark.parametrize(
     ("cells", "message"),
     [
-        ("'My notes'!A1", "there is one value to fit. One measurement justifies a uniform range only"),
+        ("'My notes'!A1", "There is one value to fit. One measurement justifies a uniform range only"),
         ("Tests!E2", "Tests!E2: The data cell holds the text 'text', not a number. Type a number."),
         ("Tests!E1", "Tests!E1: The data cell has never been calculated"),
         ("A2:A41", "'A2:A41' names no sheet. Write the sheet, too, such as Tests!A2:A41."),
         ("Tets!A2:A41", "There is no worksheet 'Tets'. Did you mean Tests?"),
         ("Nowhere", "'Nowhere' is neither a range of cells nor the name of one"),
         ("Skids[Frction]", "The table Skids has no column 'Frction'. Did you mean Friction?"),
-        ("Tests!Z1:Z9", "there is no value to fit"),
+        ("Tests!Z1:Z9", "There is no value to fit"),
     ],
 )
 def test_mistakes(xlmc, measured, cells, message):
@@ -134,7 +134,7 @@ def test_mistakes(xlmc, measured, cells, message):
 def test_counts_are_refused_where_there_are_none(xlmc, measured):
     outcome = xlmc("fit", measured, "Tests!A2:A41", "--kind", "counts")
     assert outcome.code == 2
-    assert "not every value is a whole number" in outcome.err
+    assert "Not every value is a whole number" in outcome.err
 
 
 def test_a_book_without_a_range(xlmc, measured):
@@ -152,7 +152,7 @@ def test_two_ranges(xlmc, measured):
 def test_a_book_that_is_not_there(xlmc):
     outcome = xlmc("fit", "nowhere.xlsx!A1:A9")
     assert outcome.code == 2
-    assert "there is no such file" in outcome.err
+    assert "There is no such file" in outcome.err
 
 
 def test_the_values_and_the_best_families_are_drawn_in_every_kind_of_file(xlmc, measured, tmp_path):

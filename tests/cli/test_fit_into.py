@@ -122,18 +122,18 @@ REFUSED = {
     "no column": (
         lambda book: None,
         ("drag & co", "beta"),
-        "Inputs!A1: the table xlmc_assumptions has no column Alpha",
+        "Inputs!A1: The table xlmc_assumptions has no column Alpha",
     ),
     "cutoffs": (lambda book: None, ("cut", "uniform"), "Inputs!H3: "),
     "a formula": (
         lambda book: book["Inputs"].__setitem__("G2", "=0.1/2"),
         ("drag & co", "normal"),
-        "Inputs!G2: the cell holds a formula",
+        "Inputs!G2: The cell holds a formula",
     ),
     "no room": (
         lambda book: book["Inputs"].__setitem__("C4", "taken"),
         ("new", "normal"),
-        "Inputs!C4: there is no free row below the table xlmc_assumptions",
+        "Inputs!C4: There is no free row below the table xlmc_assumptions",
     ),
     "no table": (
         lambda book: book["Inputs"].tables.__delitem__("xlmc_assumptions"),
@@ -171,7 +171,7 @@ def test_the_workbook_is_no_output(xlmc, data, book):
     before = book.read_bytes()
     outcome = xlmc("fit", f"{data}!A1:A40", "--name", "new", "--into", book, "-o", book, "--overwrite")
     assert outcome.code == 2
-    assert "this is the file that is read" in outcome.err
+    assert "This is the file that is read" in outcome.err
     assert book.read_bytes() == before
 
 
@@ -202,7 +202,7 @@ def test_a_workbook_that_has_changed_meanwhile_is_left_alone(xlmc, data, book, m
     monkeypatch.setattr(fit_into, "write", late)
     outcome = xlmc("fit", f"{data}!A1:A40", "--name", "new", "--distribution", "normal", "--into", book)
     assert outcome.code == 2
-    assert "the workbook has changed since it was read" in outcome.err
+    assert "The workbook has changed since it was read" in outcome.err
     assert openpyxl.load_workbook(book)["Inputs"]["A9"].value == "another note"
 
 

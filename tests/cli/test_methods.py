@@ -102,7 +102,7 @@ def test_an_engine_that_refuses_the_book_is_named_and_left_out(xlmc, tmp_path):
     found = json.loads(outcome.out)
     assert list(found["not_used"]) == ["Monte Carlo, engine formulas"]
     said = found["not_used"]["Monte Carlo, engine formulas"]
-    assert said.startswith("Model!A1: the engine `formulas` cannot compute this.")
+    assert said.startswith("Model!A1: The engine `formulas` cannot compute this.")
     assert "SUM((Inputs!B2,Inputs!B3))" in said
     methods = {each["method"]: each for each in found["methods"]}
     assert "mc" in methods
@@ -117,9 +117,9 @@ def test_an_engine_that_refuses_the_book_is_named_and_left_out(xlmc, tmp_path):
 @pytest.mark.parametrize(
     ("name", "message"),
     [
-        ("m.doc", "the ending .doc is none of a file"),
-        ("m", "it has no ending"),
-        ("nowhere/m.png", "there is no folder"),
+        ("m.doc", "This command writes no file that ends in .doc"),
+        ("m", "The name of the file has no ending"),
+        ("nowhere/m.png", "There is no folder"),
     ],
 )
 def test_an_output_that_cannot_be(xlmc, case_study, name, message):
@@ -131,7 +131,7 @@ def test_an_output_that_cannot_be(xlmc, case_study, name, message):
 def test_a_document_must_have_the_ending_of_its_option(xlmc, case_study, tmp_path):
     outcome = xlmc("methods", case_study, "--pdf", tmp_path / "m.docx")
     assert outcome.code == 2
-    assert "the report must end in .pdf" in outcome.err
+    assert "The report must end in .pdf" in outcome.err
 
 
 def test_the_workbook_itself_is_no_output(xlmc, case_study, tmp_path):
@@ -139,7 +139,7 @@ def test_the_workbook_itself_is_no_output(xlmc, case_study, tmp_path):
     copy.write_bytes(case_study.read_bytes())
     outcome = xlmc("methods", copy, "-o", copy)
     assert outcome.code == 2
-    assert "this is the file that is read" in outcome.err
+    assert "This is the file that is read" in outcome.err
     assert copy.read_bytes() == case_study.read_bytes()
 
 

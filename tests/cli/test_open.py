@@ -67,6 +67,6 @@ def test_the_browser_is_started_with_a_file_of_the_users_own_and_not_with_the_li
 def test_what_cannot_be_opened_is_told(xlmc, tmp_path):
     outcome = xlmc("open", "nothing.xlsx", "--no-browser")
     assert outcome.code == 2
-    assert "nothing.xlsx: there is no such file" in outcome.err
+    assert "nothing.xlsx: There is no such file" in outcome.err
     assert xlmc("open", "--port", "0").code == 2
     assert xlmc("open", "--memory", "20").code == 2

@@ -75,8 +75,8 @@ CHANGES = [
     (results_of_another_book, "it holds results of 'other.xlsx', not of 'book.xlsx'"),
     (lambda path: path.write_text("my notes", encoding="utf-8"), "xlmc did not write it"),
     (lambda path: path.chmod(0o444), "the file is read-only"),
-    (become_a_folder, "this is a folder"),
-    (become_a_link_to_nothing, "this is a link to"),
+    (become_a_folder, "This is a folder"),
+    (become_a_link_to_nothing, "This is a link to"),
     (be_held_open, "Excel holds the workbook open"),
 ]
 
@@ -126,7 +126,7 @@ def test_every_kind_of_output_replaces_its_own_but_tables(xlmc, book, written, t
     assert set(NAMED) <= set(first)
     outcome = xlmc("simulate", book, "--seed", 5, *ALL)
     assert outcome.code == 2
-    assert "a.csv: the file exists already, and xlmc cannot tell who wrote a .csv" in outcome.err
+    assert "a.csv: The file exists already, and xlmc cannot tell who wrote a .csv" in outcome.err
     assert contents(tmp_path) == first
     (tmp_path / "a.csv").unlink()
     xlmc("simulate", book, "--seed", 5, *ALL)
@@ -147,7 +147,7 @@ def test_every_kind_of_output_spares_what_was_changed(xlmc, book, written, tmp_p
         before = contents(tmp_path)
         outcome = xlmc(command, source, *options, "--quiet")
         assert outcome.code == 2
-        assert f"xlmc: {name}: the file exists already, and" in outcome.err
+        assert f"xlmc: {name}: The file exists already, and" in outcome.err
         assert contents(tmp_path) == before
         (tmp_path / name).unlink()
     for name, content in changed.items():
@@ -167,7 +167,7 @@ def test_the_book_itself_is_no_output(xlmc, book, tmp_path, spelling, overwrite)
     before = contents(tmp_path)
     outcome = xlmc("simulate", book, "-o", spelling, *overwrite)
     assert outcome.code == 2
-    assert "this is the file that is read. --in-place writes the result sheets into it" in outcome.err
+    assert "This is the file that is read. --in-place writes the result sheets into it" in outcome.err
     assert contents(tmp_path) == before
 
 
@@ -193,7 +193,7 @@ def test_a_result_that_is_run_in_place_is_the_persons_from_then_on(xlmc, book, w
 def test_two_outputs_in_one_file_are_refused(xlmc, book, tmp_path, options):
     outcome = xlmc("simulate", book, *options)
     assert outcome.code == 2
-    assert "two outputs would be written to this file" in outcome.err
+    assert "Two outputs would be written to this file" in outcome.err
     assert sorted(contents(tmp_path)) == ["book.xlsx"]
 
 
@@ -248,7 +248,7 @@ def test_an_answer_is_told_though_the_current_folder_is_gone(xlmc, book, tmp_pat
     during_the_run(monkeypatch, started_in.rmdir)
     outcome = xlmc("simulate", book, "-o", "a.xlsx", "--json", tmp_path / "a.json", "--quiet")
     assert outcome.code == 2
-    assert "a.xlsx: the folder in which xlmc was started is not there any more" in outcome.err
+    assert "a.xlsx: The folder in which xlmc was started is not there any more" in outcome.err
     assert "51 % range" in outcome.out
     assert (tmp_path / "a.json").stat().st_size > 100
 
@@ -329,7 +329,7 @@ def test_new_writes_nothing_through_a_link_to_nothing(xlmc, tmp_path):
     (tmp_path / "case.xlsx").symlink_to("elsewhere.xlsx")
     outcome = xlmc("new", "skid", "case.xlsx")
     assert outcome.code == 2
-    assert "this is a link to" in outcome.err
+    assert "This is a link to" in outcome.err
     assert not (tmp_path / "elsewhere.xlsx").exists()
 
 

@@ -160,7 +160,7 @@ MISTAKES = {
     "a text as an input": (["--assumption", "B4"], ["Beam!B4", "holds no number"]),
     "a blank cell as an input": (["--assumption", "H9"], ["Beam!H9", "is blank"]),
     "a number as an answer": (["--forecast", "B1"], ["Beam!B1", "holds no formula", "--assumption"]),
-    "no such sheet": (["--forecast", "Bean!B1"], ["there is no sheet 'Bean'", "Beam"]),
+    "no such sheet": (["--forecast", "Bean!B1"], ["There is no sheet 'Bean'", "Beam"]),
     "no such name": (["--forecast", "speed"], ["'speed' is no cell"]),
     "both places": (["--in-place", "-o", "x.xlsx"], ["--in-place and --output"]),
     "another ending": (["-o", "x.xlsm"], [".xlsx"]),

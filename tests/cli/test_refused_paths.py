@@ -48,7 +48,7 @@ def refuse_looking(monkeypatch, folder):
 def test_names_that_are_too_long(xlmc, book, tmp_path, option):
     outcome = xlmc("simulate", book, "-n", 50, option[0], tmp_path / (LONG + option[1]))
     assert outcome.code == 2
-    assert outcome.err.endswith("the file cannot be written (File name too long). Name another file.\n")
+    assert outcome.err.endswith("The file cannot be written (File name too long). Name another file.\n")
     assert [path.name for path in tmp_path.iterdir()] == ["book.xlsx"]
 
 
@@ -66,7 +66,7 @@ def test_a_folder_that_may_not_be_entered(xlmc, book, tmp_path, monkeypatch):
     refuse_looking(monkeypatch, closed)
     outcome = xlmc("simulate", book, "-n", 50, "-o", closed / "a.xlsx")
     assert (outcome.code, outcome.err.count("\n")) == (2, 1)
-    assert "a.xlsx: the file is in use or may not be written. Close it" in outcome.err
+    assert "a.xlsx: The file is in use or may not be written. Close it" in outcome.err
     with pytest.raises(WorkbookError, match="may not be written"):
         package.load(book).simulate(50).save(closed / "a.xlsx")
 
@@ -76,7 +76,7 @@ def test_a_read_only_folder_is_named(xlmc, book, tmp_path, monkeypatch):
     for command in (("simulate", book, "-n", 50), ("new", "skid", tmp_path / "a.xlsx")):
         outcome = xlmc(*command)
         assert outcome.code == 2
-        assert f"the folder {str(tmp_path)!r} may not be written to. Name a file in another folder" in outcome.err
+        assert f"The folder {str(tmp_path)!r} may not be written to. Name a file in another folder" in outcome.err
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows allows no such names")
@@ -94,7 +94,7 @@ def test_a_book_without_an_ending_has_no_results(xlmc, book, tmp_path, name):
     bare = shutil.move(book, tmp_path / name)
     outcome = xlmc("simulate", bare, "-n", 50)
     assert outcome.code == 2
-    assert f"{name}: the name of the workbook has no ending. Rename it, such as" in outcome.err
+    assert f"{name}: The name of the workbook has no ending. Rename it, such as" in outcome.err
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
@@ -109,4 +109,4 @@ def test_new_says_whose_results_are_in_the_way(xlmc, book, tmp_path):
 def test_a_folder_is_no_saved_run(xlmc, tmp_path):
     outcome = xlmc("report", tmp_path)
     assert outcome.code == 2
-    assert "the file cannot be read (Is a directory). Name a saved run, which ends in .xlmcrun" in outcome.err
+    assert "The file cannot be read (Is a directory). Name a saved run, which ends in .xlmcrun" in outcome.err

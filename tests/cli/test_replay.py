@@ -163,7 +163,7 @@ def test_a_workbook_that_an_older_version_ran_and_this_one_refuses(xlmc, results
     outcome = xlmc("replay", results)
     assert outcome.code == 1
     assert outcome.out.splitlines()[1:3] == ["differs.", f"xlmc 0.1.0 made this run, and this is xlmc {__version__}."]
-    assert "The workbook cannot be run any more: no" in outcome.out
+    assert "The workbook cannot be run any more: No" in outcome.out
     assert "edited" not in outcome.out
     assert json.loads(xlmc("replay", results, "--json").out)["made_by"] == "0.1.0"
 

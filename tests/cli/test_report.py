@@ -138,22 +138,22 @@ def test_draws_that_were_not_saved_are_blank_and_said_to_be(xlmc, small_book, tm
     ("options", "message"),
     [
         (("--json", "a.xlsx"), "JSON must end in .json. Name it 'a.json'"),
-        (("--json", "no/a.json"), "there is no folder"),
-        (("--extract", "a.xlsx"), "a table of trials must end in .csv or .parquet"),
-        (("--extract", "no/a.csv"), "there is no folder"),
-        (("--save-run", "book.xlsx"), "a saved run must end in .xlmcrun"),
+        (("--json", "no/a.json"), "There is no folder"),
+        (("--extract", "a.xlsx"), "A table of trials must end in .csv or .parquet"),
+        (("--extract", "no/a.csv"), "There is no folder"),
+        (("--save-run", "book.xlsx"), "A saved run must end in .xlmcrun"),
         (("-o", "a.xlsm"), "must end in .xlsx. Name it 'a.xlsx'"),
-        (("-o", "no/a.xlsx"), "there is no folder"),
-        (("-o", "a.txt"), "a.txt: the ending .txt is none of a file that this command writes"),
-        (("-o", "a"), "a: it has no ending. The ending says what is written: .xlsx"),
-        (("-o", "a.pdf", "-o", "no/a.html"), "there is no folder"),
-        (("-o", "a.json", "--json", "a.json"), "two outputs would be written to this file"),
+        (("-o", "no/a.xlsx"), "There is no folder"),
+        (("-o", "a.txt"), "a.txt: This command writes no file that ends in .txt"),
+        (("-o", "a"), "a: The name of the file has no ending. The ending says what is written: .xlsx"),
+        (("-o", "a.pdf", "-o", "no/a.html"), "There is no folder"),
+        (("-o", "a.json", "--json", "a.json"), "Two outputs would be written to this file"),
         (("--in-place", "-o", "a.xlsx"), "--in-place and -o with a workbook cannot both be given"),
-        (("--pdf", "a.docx"), "the report must end in .pdf. Name it 'a.pdf'"),
-        (("--docx", "a.pdf"), "the report must end in .docx. Name it 'a.docx'"),
-        (("--pdf", "no/a.pdf"), "there is no folder"),
-        (("--pdf", "a.pdf", "--sections", "answer,nothing"), "a report has no section 'nothing'"),
-        (("--pdf", "a.pdf", "--case", "nothing"), "a field of the case is not 'nothing'"),
+        (("--pdf", "a.docx"), "The report must end in .pdf. Name it 'a.pdf'"),
+        (("--docx", "a.pdf"), "The report must end in .docx. Name it 'a.docx'"),
+        (("--pdf", "no/a.pdf"), "There is no folder"),
+        (("--pdf", "a.pdf", "--sections", "answer,nothing"), "A report has no section 'nothing'"),
+        (("--pdf", "a.pdf", "--case", "nothing"), "A field of the case is not 'nothing'"),
         (("--pdf", "a.pdf", "--paper", "a5"), "'a5' is not one of letter, a4"),
         (("--sections", "answer"), "give -o REPORT.pdf or -o REPORT.docx"),
     ],
@@ -169,7 +169,7 @@ def test_names_are_refused_before_the_run(xlmc, book, tmp_path, monkeypatch, opt
 
 
 def refuse(*_, **__):
-    raise WorkbookError("the disk is full", where="book-results.xlsx")
+    raise WorkbookError("The disk is full", where="book-results.xlsx")
 
 
 @pytest.mark.parametrize("command", ["simulate", "report"])
@@ -180,7 +180,7 @@ def test_a_file_that_cannot_be_written_takes_no_other_with_it(xlmc, simulated, b
     monkeypatch.setattr("xlmc.api.Simulation.save_page", refuse)
     outcome = xlmc(command, source, "-o", "b.xlsx", "--html", "b.html", "--json", "b.json", "--extract", "b.csv")
     assert outcome.code == 2
-    assert outcome.err.count("xlmc: book-results.xlsx: the disk is full") == 2
+    assert outcome.err.count("xlmc: book-results.xlsx: The disk is full") == 2
     assert "Results are in" not in outcome.out
     assert "area" in outcome.out  # the numbers are there
     assert "warning: " in outcome.err
@@ -193,7 +193,7 @@ def test_what_is_no_saved_run(xlmc, book):
     outcome = xlmc("report", other)
     assert outcome.code == 2
     assert outcome.err.startswith(
-        f"xlmc: {other}: the file is not a saved run. Save one with xlmc simulate BOOK -o RUN.xlmcrun"
+        f"xlmc: {other}: The file is not a saved run. Save one with xlmc simulate BOOK -o RUN.xlmcrun"
     )
 
 
@@ -224,7 +224,7 @@ def test_a_forecast_that_is_not_there_is_refused_before_the_run(xlmc, book, tmp_
     monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.run_model", lambda *_, **__: 1 / 0)
     outcome = xlmc("simulate", book, "--pdf", "a.pdf", "--forecasts", "nothing")
     assert outcome.code == 2
-    assert "there is no forecast 'nothing'" in outcome.err
+    assert "There is no forecast 'nothing'" in outcome.err
     assert [path.name for path in tmp_path.iterdir()] == ["book.xlsx"]
 
 
@@ -280,7 +280,7 @@ def test_what_a_result_workbook_cannot_give(xlmc, book, tmp_path, options, messa
 def test_a_workbook_without_results_has_no_report(xlmc, book):
     outcome = xlmc("report", book, "--pdf", "a.pdf")
     assert outcome.code == 2
-    assert "the workbook holds no record of a run" in outcome.err
+    assert "The workbook holds no record of a run" in outcome.err
 
 
 @pytest.mark.parametrize("options", [(), ("--pdf", "report.pdf")])
@@ -293,5 +293,5 @@ def test_a_table_of_the_case_that_is_not_one_is_refused_before_the_run(xlmc, boo
     monkeypatch.setattr(simulate, "run_model", None)
     run = xlmc("simulate", book, *options)
     assert run.code == 2
-    assert "Case!A2: the table xlmc_case must have two columns" in run.err
+    assert "Case!A2: The table xlmc_case must have two columns" in run.err
     assert list(tmp_path.iterdir()) == [book]

@@ -63,13 +63,13 @@ def test_what_is_printed(xlmc, plain_book):
 def test_a_pattern_that_fits_nothing(xlmc, case_study):
     outcome = xlmc("screen", case_study, "--freeze", "*wheelbase*")
     assert outcome.code == 2
-    assert "no assumption that is drawn has the name '*wheelbase*'" in outcome.err
+    assert "No assumption that is drawn has the name '*wheelbase*'" in outcome.err
 
 
 def test_a_tolerance_that_cannot_be_read(xlmc, case_study):
     outcome = xlmc("screen", case_study, "--tolerance", "small")
     assert outcome.code == 2
-    assert "the tolerance 'small' cannot be read" in outcome.err
+    assert "The tolerance 'small' cannot be read" in outcome.err
 
 
 def test_no_table_is_wider_than_80_columns_where_that_is_all_there_is(xlmc, case_study, monkeypatch):
@@ -103,4 +103,4 @@ def test_an_answer_that_needs_no_better_input(xlmc, plain_book):
 def test_a_forecast_that_is_not_there(xlmc, case_study):
     outcome = xlmc("screen", case_study, "--forecast", "Speed*")
     assert outcome.code == 2
-    assert "no forecast has the name 'Speed*'" in outcome.err
+    assert "No forecast has the name 'Speed*'" in outcome.err

@@ -64,8 +64,8 @@ def test_threads_change_nothing(xlmc, book):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--workers", 2), "the number of workers can be set for a local cluster only"),
-        (("--scheduler", "ray"), "there is no scheduler 'ray'"),
+        (("--workers", 2), "The number of workers can be set for a local cluster only"),
+        (("--scheduler", "ray"), "There is no scheduler 'ray'"),
     ],
 )
 def test_workers_that_cannot_be_had(xlmc, book, options, message):
@@ -82,7 +82,7 @@ def test_a_full_disk_is_a_message_and_nothing_is_lost(xlmc, book, tmp_path, monk
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path / "none"))
     outcome = xlmc("simulate", book, "-n", 10_000)
     assert outcome.code == 2
-    assert outcome.err.startswith("xlmc: temporary folder: the accepted trials cannot be kept there: No such file")
+    assert outcome.err.startswith("xlmc: temporary folder: The accepted trials cannot be kept there: No such file")
     assert "TMPDIR" in outcome.err
     assert results.read_bytes() == before
 
@@ -103,7 +103,7 @@ def test_a_run_that_the_disk_cannot_hold_is_refused(xlmc, book, tmp_path, monkey
     monkeypatch.setattr("xlmc.montecarlo.loop.disk_needed.free_disk", lambda: (tmp_path, 1_000))
     outcome = xlmc("simulate", book, "-n", 10_000)
     assert outcome.code == 2
-    assert "the run needs about" in outcome.err
+    assert "The run needs about" in outcome.err
     assert "TMPDIR" in outcome.err
     assert results.read_bytes() == before
 
@@ -238,7 +238,7 @@ def test_html_writes_the_page_beside_the_workbook(xlmc, book, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("path", "why"), [("page.xlsx", "must end in .html"), ("none/page.html", "there is no folder")]
+    ("path", "why"), [("page.xlsx", "must end in .html"), ("none/page.html", "There is no folder")]
 )
 def test_a_page_that_cannot_be_written_is_refused_before_the_run(xlmc, book, tmp_path, path, why):
     outcome = xlmc("simulate", book, "-n", 5_000, "--html", path)

@@ -43,7 +43,7 @@ def test_json(xlmc, as_printed):
 def test_a_book_that_is_not_there(xlmc):
     outcome = xlmc("stability", "nothing.xlsx")
     assert outcome.code == 2
-    assert "there is no such file" in outcome.err
+    assert "There is no such file" in outcome.err
 
 
 def _words(text):

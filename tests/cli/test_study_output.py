@@ -83,7 +83,7 @@ def test_documents_say_what_the_terminal_says(xlmc, command, tmp_path):
     assert message in "".join("".join([*cells, *(each.text for each in written.paragraphs)]).split())
     again = xlmc(*command, "--pdf", tmp_path / "found.pdf")  # a document bears no mark of who wrote it
     assert again.code == 2
-    assert "the file exists already" in again.err
+    assert "The file exists already" in again.err
 
 
 def test_every_kind_is_written_by_its_ending(xlmc, command, book, tmp_path):
@@ -116,7 +116,7 @@ def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command,
         (["--html", tmp_path / "nowhere" / "found.html"], "nowhere"),
         (["--pdf", tmp_path / "found.docx"], "must end in .pdf"),
         (["--docx", tmp_path / "found.doc"], "must end in .docx"),
-        (["-o", tmp_path / "both.html", "--html", tmp_path / "both.html"], "two outputs would be written to this file"),
+        (["-o", tmp_path / "both.html", "--html", tmp_path / "both.html"], "Two outputs would be written to this file"),
     ):
         outcome = xlmc(*command, *given)
         assert outcome.code == 2
@@ -134,14 +134,14 @@ def test_a_full_disk_costs_neither_the_answer_nor_the_other_files(xlmc, book, tm
 
     def fill(path, *arguments):
         if path.suffix == ".xlsx":
-            raise WorkbookError("the disk is full", where=path)
+            raise WorkbookError("The disk is full", where=path)
         write(path, *arguments)
 
     monkeypatch.setattr(study_report, "write_workbook", fill)
     sheet, page = tmp_path / "found.xlsx", tmp_path / "found.html"
     outcome = xlmc("verify", book, "--all", "-o", sheet, "--html", page)
     assert outcome.code == 2
-    assert outcome.err == f"xlmc: {sheet}: the disk is full.\n"
+    assert outcome.err == f"xlmc: {sheet}: The disk is full.\n"
     assert "formula cell" in outcome.out
     assert outcome.out.endswith(f"Written: {page}\n")
     assert page.stat().st_size > 100
@@ -158,5 +158,5 @@ def test_a_file_that_becomes_the_workbook_during_a_study_spares_it(xlmc, book, t
     monkeypatch.setattr(study_report, "_page", made_meanwhile)
     outcome = xlmc("verify", book, "--all", "--html", page, "--overwrite")
     assert outcome.code == 2
-    assert outcome.err == f"xlmc: {page}: this is the file that is read. Name another file.\n"
+    assert outcome.err == f"xlmc: {page}: This is the file that is read. Name another file.\n"
     assert book.read_bytes() == before

@@ -246,5 +246,5 @@ def test_scenarios_switch_rows(tmp_path, column):
 def test_a_limit_of_a_row_that_is_off_is_refused_in_a_scenario(own):
     with pytest.raises(DefinitionError, match="'slow' is not used, so that its limits do not matter"):
         applied(own, Scenario("x", (Limits("slow", {"at_most": 30.0}),)).changes)
-    with pytest.raises(DefinitionError, match="there is no filter or evidence 'nope'"):
+    with pytest.raises(DefinitionError, match="There is no filter or evidence 'nope'"):
         applied(own, [Switched("nope", False)])

@@ -110,7 +110,7 @@ def test_a_closed_pipe_is_quiet_and_the_files_are_written(into, tmp_path):
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="Linux has a file that is always full")
 def test_output_into_a_full_file_is_one_line_and_the_files_are_written(into, tmp_path):
     done = into("/dev/full")
-    assert (done.code, done.err) == (2, "xlmc: the output cannot be written (No space left on device).\n")
+    assert (done.code, done.err) == (2, "xlmc: The output cannot be written (No space left on device).\n")
     assert (tmp_path / "case-results.xlsx").exists()
 
 

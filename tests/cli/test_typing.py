@@ -57,10 +57,10 @@ def test_a_number_out_of_range(one_line, typed, message):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("simulat", BOOK), "there is no command 'simulat'. Did you mean simulate?"),
+        (("simulat", BOOK), "There is no command 'simulat'. Did you mean simulate?"),
         ((BOOK,), f"type: xlmc simulate {BOOK}"),
-        (("simulate", BOOK, "--trails", 3), "there is no option --trails. Did you mean --trials?"),
-        (("--seed", 3), "there is no option --seed. See xlmc --help."),
+        (("simulate", BOOK, "--trails", 3), "There is no option --trails. Did you mean --trials?"),
+        (("--seed", 3), "There is no option --seed. See xlmc --help."),
         (
             ("simulate", BOOK, "--engine", "nmpy"),
             f"--engine: 'nmpy' is not one of {', '.join(ENGINES)}. Did you ",
@@ -72,7 +72,7 @@ def test_a_number_out_of_range(one_line, typed, message):
         (("simulate", BOOK, "-n"), "Option '-n' requires an argument."),
         (("new", "planar-imapct"), "Did you mean planar-impact?"),
         (("new", "zzzz"), "There are blank, skid, "),
-        (("new", "skid", "x.xls"), "x.xls: a template is an Excel workbook, whose name ends in .xlsx. Name it x.xlsx."),
+        (("new", "skid", "x.xls"), "x.xls: A template is an Excel workbook, whose name ends in .xlsx. Name it x.xlsx."),
         (("new", "skid", "x.xlsm"), "ends in .xlsx"),
         (("new", "skid", "x"), "Name it x.xlsx"),
         (("screen", BOOK, "--acceptance", "-1"), "--acceptance: "),

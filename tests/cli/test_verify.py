@@ -86,4 +86,4 @@ def test_files_say_what_the_terminal_says(xlmc, spoiled, tmp_path):
 def test_a_file_that_is_the_workbook_is_refused(xlmc, case_study):
     outcome = xlmc("verify", case_study, "-o", case_study)
     assert outcome.code == 2
-    assert "this is the file that is read" in outcome.err
+    assert "This is the file that is read" in outcome.err

@@ -26,7 +26,7 @@ def test_saved_and_held_values_stand_in_here_too(lower):
 def test_what_formulas_cannot_compute_is_told_of_its_cell(lower):
     lowering, (target,) = lower({"C1": "=SUM((A1,A2))"}, ["A1", "A2"], ["C1"])
     draws = {"A1": np.array([2.0]), "A2": np.array([3.0])}
-    with pytest.raises(FormulaError, match="the engine `formulas` cannot compute this") as caught:
+    with pytest.raises(FormulaError, match="The engine `formulas` cannot compute this") as caught:
         FormulasProgram(lowering, [target], [], frozenset()).evaluator(1).filters(draws, 1)
     assert caught.value.where == "S!C1"
     assert caught.value.text == "SUM((S!A1,S!A2))"
@@ -34,7 +34,7 @@ def test_what_formulas_cannot_compute_is_told_of_its_cell(lower):
 
 def test_a_function_that_formulas_lacks_is_shown_with_its_own_references(lower):
     lowering, (target,) = lower({"C1": "=SIN(B7)+ENCODEURL(B7)"}, ["B7"], ["C1"])
-    with pytest.raises(FormulaError, match="the engine `formulas` cannot compute this") as caught:
+    with pytest.raises(FormulaError, match="The engine `formulas` cannot compute this") as caught:
         FormulasProgram(lowering, [target], [], frozenset()).evaluator(1).filters({"B7": np.array([2.0])}, 1)
     assert caught.value.text == "(SIN(S!B7)+ENCODEURL(S!B7))"
 

@@ -21,10 +21,10 @@ def verdict(error):
 @pytest.mark.parametrize(
     "error",
     [
-        WorkbookError("the file is empty", where="case.xlsx"),
-        FormulaError("a reference is needed here", where="S!F1", text='ROW("x")'),
+        WorkbookError("The file is empty", where="case.xlsx"),
+        FormulaError("A reference is needed here", where="S!F1", text='ROW("x")'),
         DefinitionError("S!A1: Low is blank.\nS!A2: Low is blank"),
-        SimulationError("there is no engine 'x'", hint="choose numpy"),
+        SimulationError("There is no engine 'x'", hint="choose numpy"),
     ],
 )
 def test_a_message_with_a_place_is_fine(error):
@@ -35,9 +35,9 @@ def test_a_message_with_a_place_is_fine(error):
     ("error", "key"),
     [
         (WorkbookError(" ", where="case.xlsx"), "is empty"),
-        (WorkbookError("the file is empty"), "has no place"),
+        (WorkbookError("The file is empty"), "has no place"),
         (DefinitionError("S!A1: Low is blank.\nHigh is blank"), "has no place"),
-        (WorkbookError("the cell shares formula None", where="S!A1"), "speaks of Python"),
+        (WorkbookError("The cell shares formula None", where="S!A1"), "speaks of Python"),
         (WorkbookError("it is <xlmc.errors.ErrorCode object at 0x7f>", where="S!A1"), "speaks of Python"),
         (WorkbookError("it holds array([1.0])", where="S!A1"), "speaks of Python"),
     ],

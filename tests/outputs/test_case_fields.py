@@ -74,7 +74,7 @@ def test_a_table_that_says_two_things_is_refused_with_its_cell(workbook, sentenc
 
 @pytest.mark.parametrize("text", ["Case number", "=17", "  = x"])
 def test_a_field_that_is_typed_without_a_name_or_a_text_is_refused(text):
-    with pytest.raises(SimulationError, match="a field of the case is not"):
+    with pytest.raises(SimulationError, match="A field of the case is not"):
         fields_from([text])
 
 

@@ -216,7 +216,7 @@ def _drawn_with(model: CompiledModel | None, correlation: Correlation) -> str:
 
 
 def _show_need(model: CompiledModel, workbook: Workbook) -> None:
-    formulas = sum(c.formula is not None for sheet in workbook.sheets.values() for c in sheet.cells.values())
+    formulas = sum(1 for _ in workbook.formula_cells())
     needed, varying = model.needed.graph.formulas, model.needed.graph.varying
     count = sum(cell in varying for cell in needed)
     counted = (

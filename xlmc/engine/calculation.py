@@ -10,15 +10,14 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Final
 
-from xlmc.engine.graph.arrays import size_of
 from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.engine.graph.moment import Moment
-from xlmc.engine.saved_values import filled_cells, is_saved_value, same_value
+from xlmc.engine.saved_values import array_of, faults_of, filled_cells, is_saved_value, same_value
 from xlmc.errors import Notice
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver, build_graph
-from xlmc.excel.formula.graph import Graph
-from xlmc.excel.formula.precedents import mentioned
+from xlmc.excel.formula.graph import Graph, reached
+from xlmc.excel.formula.precedents import mentioned_cells
 from xlmc.excel.workbook.lazy_sheets import with_contents, with_values
 from xlmc.excel.workbook.places import changeable_cell
 from xlmc.excel.workbook.workbook import CellValue, Workbook
@@ -68,12 +67,12 @@ class Calculator:
 
     def __init__(self, book: Workbook, changing: Collection[Cell] = (), *, volatile: bool = False) -> None:
         self._book, self._moment = book, Moment() if volatile else None
-        self._formulas = list(_formulas(book))
+        self._formulas = list(book.formula_cells())
         self._what_if = {cell for table in book.data_tables for cell in table.area.cells()}
         given = {cell: book.content(cell).value for cell in {*changing, *self._what_if}}
         self._audit = self._lowered(book, self._formulas, given, audit=True)
         self._users = self._all_users(given.keys())
-        self._faults = dict(_faults(self._audit))
+        self._faults = faults_of(self._audit, _OTHERWISE_EACH_TIME)
         stale = [cell for cell in self._audit.graph.formulas if not self._is_right(cell)]
         self._stale = self._downstream(stale) - self._what_if
         self._changing = self._downstream(self._with_what_if(changing)) if changing else frozenset()
@@ -103,7 +102,8 @@ class Calculator:
             if cell not in again and not self._fills(cell)
         }
         lowering = self._lowered(book, targets, right, audit=False)
-        faults = {cell: why for cell, why in self._faults.items() if cell not in again} | dict(_faults(lowering))
+        faults = {cell: why for cell, why in self._faults.items() if cell not in again}
+        faults |= faults_of(lowering, _OTHERWISE_EACH_TIME)
         faults |= dict.fromkeys(what_if, _WHAT_IF)
         lost = dict.fromkeys(cell for cell in faults if self._loses_value(cell))
         unknown = dict.fromkeys(sorted(self._downstream(lost)), DEPENDS) if lost else {}
@@ -143,25 +143,13 @@ class Calculator:
                 users.setdefault(need, []).append(cell)
         cells = {*self._formulas, *given}
         for cell in graph.faults:
-            formula = self._book.content(cell).formula
-            for area in () if formula is None else mentioned(formula, cell, self._book):
-                inside = area.cells() if area.rows * area.columns <= len(cells) else (c for c in cells if c in area)
-                for need in inside:
-                    users.setdefault(need, []).append(cell)
+            for need in mentioned_cells(self._book, cell, cells):
+                users.setdefault(need, []).append(cell)
         return users
 
     def _downstream(self, start: Iterable[Cell]) -> frozenset[Cell]:
         """Return these cells, what array formulas in them fill, and all that depends on either."""
-        found: set[Cell] = set()
-        open_ = list(start)
-        while open_:
-            cell = open_.pop()
-            if cell not in found:
-                found.add(cell)
-                open_ += self._users.get(cell, ())
-                formula = self._book.content(cell).formula
-                open_ += () if formula is None or formula.array is None else formula.array.cells()
-        return frozenset(found)
+        return frozenset(reached(start, lambda cell: (*self._users.get(cell, ()), *array_of(self._book, cell))))
 
     def _with_what_if(self, changing: Collection[Cell]) -> set[Cell]:
         """Return the changing cells, and those of the what-if tables that depend on them."""
@@ -212,25 +200,6 @@ def calculated(book: Workbook, changes: Mapping[str, CellValue], *, volatile: bo
     typed = {changeable_cell(book, place): value for place, value in changes.items()}
     found = Calculator(book, typed, volatile=volatile).calculate(typed)
     return found.of(with_values(book, typed) if typed else book)
-
-
-def _formulas(book: Workbook) -> Iterator[Cell]:
-    for sheet in book.sheets.values():
-        yield from (Cell(sheet.name, *at) for at, content in sheet.cells.items() if content.formula is not None)
-
-
-def _faults(lowering: Lowering) -> Iterator[tuple[Cell, str]]:
-    """Yield each formula that has no value of its own, and why."""
-    for cell in lowering.graph.formulas:
-        formula = lowering.graph.workbook.content(cell).formula
-        if cell in lowering.faults:
-            yield cell, lowering.faults[cell].message
-        elif lowering.value(cell) is None:
-            yield cell, _OTHERWISE_EACH_TIME
-        elif formula is not None and formula.dynamic and formula.array is not None:
-            size = size_of(lowering.dag, lowering.array(cell)) or (1, 1)
-            if size != (formula.array.rows, formula.array.columns):
-                yield cell, "the formula spills into another area than when the file was saved"
 
 
 def _kept_tables(book: Workbook, lost: Collection[Cell]) -> Iterator[tuple[Cell, str]]:

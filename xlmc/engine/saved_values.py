@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from typing import Final, TypeGuard
 
+from xlmc.engine.graph.arrays import size_of
 from xlmc.engine.graph.lowering import Lowering
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell
-from xlmc.excel.workbook.workbook import CellValue
+from xlmc.excel.workbook.workbook import CellValue, Workbook
 
-__all__ = ["TOLERANCE", "filled_cells", "is_saved_value", "relative_difference", "same_value"]
+__all__ = ["TOLERANCE", "array_of", "faults_of", "filled_cells", "is_saved_value", "relative_difference", "same_value"]
 
 TOLERANCE: Final = 1e-9
 """Relative difference up to which two numbers match: with 0 nothing but 0 does."""
@@ -36,11 +37,37 @@ def is_saved_value(lowering: Lowering, cell: Cell, saved: CellValue, got: object
     )
 
 
+def faults_of(lowering: Lowering, unknown: str) -> dict[Cell, str]:
+    """Return the formulas that have no value of their own -> why.
+
+    Args:
+        lowering: with the formulas in it.
+        unknown: why one that can be computed has no value.
+    """
+    found: dict[Cell, str] = {}
+    for cell in lowering.graph.formulas:
+        formula = lowering.graph.workbook.content(cell).formula
+        if cell in lowering.faults:
+            found[cell] = lowering.faults[cell].message
+        elif lowering.value(cell) is None:
+            found[cell] = unknown
+        elif formula is not None and formula.dynamic and formula.array is not None:
+            size = size_of(lowering.dag, lowering.array(cell)) or (1, 1)
+            if size != (formula.array.rows, formula.array.columns):
+                found[cell] = "the formula spills into another area than when the file was saved"
+    return found
+
+
+def array_of(workbook: Workbook, cell: Cell) -> Iterable[Cell]:
+    """Return the cells that the array formula of a cell fills, its own among them; none if it has no such formula."""
+    formula = workbook.content(cell).formula
+    return () if formula is None or formula.array is None else formula.array.cells()
+
+
 def filled_cells(lowering: Lowering, anchor: Cell) -> Iterator[tuple[Cell, object]]:
     """Yield the other cells that an array formula fills, as far as no formula stands there, with what it gives them."""
     workbook = lowering.graph.workbook
-    formula = workbook.content(anchor).formula
-    for cell in formula.array.cells() if formula is not None and formula.array is not None else ():
+    for cell in array_of(workbook, anchor):
         if cell != anchor and workbook.content(cell).formula is None:
             value = lowering.filled(cell, anchor)
             if value is not None:

@@ -11,6 +11,7 @@ from typing import Final
 
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.excel.address import Cell
+from xlmc.excel.functions.dates.date_text import MONTHS
 from xlmc.excel.workbook.printable import label
 from xlmc.excel.workbook.workbook import CellValue, Workbook
 from xlmc.montecarlo.definitions.tables.reserved_tables import CASE
@@ -26,20 +27,6 @@ _SPELLINGS: Final = {"organization": "Organisation", "case": "Case number", "num
 _FIRST_DAY: Final = {False: date(1899, 12, 30), True: date(1904, 1, 1)}
 """The day before day 1 of the calendar that begins in 1900 (Excel counts a 29 February 1900), and of that of 1904."""
 _LAST_SERIAL: Final = 2_958_465
-_MONTHS: Final = (
-    "January",
-    "February",
-    "March",
-    "April",
-    "May",
-    "June",
-    "July",
-    "August",
-    "September",
-    "October",
-    "November",
-    "December",
-)
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,7 +65,7 @@ def case_of(workbook: Workbook, given: Mapping[str, str]) -> Case:
     dated = _day(found.get("Date"), workbook.date1904)
     fields = {name: as_text(found[name]) for name in (*FIELDS, *found) if found.get(name) is not None}
     if dated is not None:
-        fields["Date"] = f"{dated.day} {_MONTHS[dated.month - 1]} {dated.year}"
+        fields["Date"] = f"{dated.day} {MONTHS[dated.month - 1]} {dated.year}"
     return Case({name: text for name, text in fields.items() if text}, dated)
 
 

@@ -119,7 +119,7 @@ def test_what_is_not_there(book, model):
     plain = book(CELLS, GIVEN, {"x": "B1"})
     with pytest.raises(DefinitionError, match="defines no scenario"):
         answers(plain)
-    with pytest.raises(SimulationError, match="there is no scenario 'none'"):
+    with pytest.raises(SimulationError, match="There is no scenario 'none'"):
         model_of(model, "none")
     with pytest.raises(DefinitionError, match=r"In the scenario 'bad': a: Low \(2\) is above High \(1\)"):
         model_of(model, Scenario("bad", (Range("a", 2, 1),)))

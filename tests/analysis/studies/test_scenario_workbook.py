@@ -142,9 +142,9 @@ def test_what_cannot_be_computed_is_left_to_excel(small):
     ("changes", "error", "message"),
     [
         ((Frozen("a", 1.5),), DefinitionError, "needs a column Frozen for 'a', and the table has none"),
-        ((Range("b", 0.5, 2.0),), WorkbookError, "Sheet!C3: the cell holds a formula, which would be lost"),
+        ((Range("b", 0.5, 2.0),), WorkbookError, "Sheet!C3: The cell holds a formula, which would be lost"),
         ((Range("u", 0.5, None),), DefinitionError, "changes 'u', which stands in no table"),
-        ((Typed(parse_address("Sheet!E9"), 1.0),), WorkbookError, "Sheet!E9: the cell holds a formula"),
+        ((Typed(parse_address("Sheet!E9"), 1.0),), WorkbookError, "Sheet!E9: The cell holds a formula"),
         ((Range("a", 2.0, 1.0),), DefinitionError, "Low (2) is above High (1)"),
     ],
 )
@@ -160,7 +160,7 @@ def test_what_cannot_be_typed_is_refused(small, changes, error, message):
 
 def test_a_workbook_is_typed_into_only_on_request_and_while_nobody_else_has_it(small):
     path, edited = small.path, edited_workbook(small, rate(5.0))
-    with pytest.raises(WorkbookError, match="this is the file that is read"):
+    with pytest.raises(WorkbookError, match="This is the file that is read"):
         write_edited(edited, path)
     lock = path.with_name(f"~${path.name}")
     lock.touch()
@@ -182,7 +182,7 @@ def test_a_file_that_is_there_is_not_replaced(small):
     copy = shutil.copy(small.path, small.path.with_name("copy.xlsx"))
     with pytest.raises(WorkbookError, match="exists already"):
         Model(small).save_scenario(rate(5.0), copy)
-    with pytest.raises(WorkbookError, match=r"a copy of a \.xlsx workbook must end in \.xlsx"):
+    with pytest.raises(WorkbookError, match=r"A copy of a \.xlsx workbook must end in \.xlsx"):
         Model(small).save_scenario(rate(5.0), copy.with_suffix(".xlsm"))
     assert copy.read_bytes() == small.path.read_bytes()
 
@@ -195,7 +195,7 @@ def test_a_scenario_asks_for_the_same_forecasts(case):
 
 def test_the_run_of_a_scenario_is_not_saved_as_a_run_of_the_file(small, tmp_path):
     run = simulated(model_of(small, rate(5.0)), 200)
-    with pytest.raises(SimulationError, match="no file holds the workbook of this run"):
+    with pytest.raises(SimulationError, match="No file holds the workbook of this run"):
         Simulation(run).save(tmp_path / "r.xlsx")
     with pytest.raises(SimulationError):
         Simulation(run).keep(tmp_path / "r.xlmcrun")

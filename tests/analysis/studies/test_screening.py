@@ -143,7 +143,7 @@ def test_sets_by_pattern(weighted):
     model = weighted({"a": 1.0, "b one": 0.1, "b two": 0.2, "c": 0.3})
     found = screen(model, sets=["B *", "c, b one"], **SIZE)
     assert [cost.names for cost in found.sets] == [("b one", "b two"), ("c", "b one")]
-    with pytest.raises(SimulationError, match="no assumption that is drawn has the name 'd'"):
+    with pytest.raises(SimulationError, match="No assumption that is drawn has the name 'd'"):
         screen(model, sets=["d"], **SIZE)
 
 

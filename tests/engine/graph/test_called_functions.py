@@ -144,7 +144,7 @@ def test_a_function_of_excel_without_a_body_is_refused_by_name_with_its_cell(boo
 
 @pytest.mark.parametrize("name", ["DUMMYFUNCTION", "ARRAYROW", "SUMM"])
 def test_what_nobody_knows_is_refused_as_unknown(book, name):
-    with pytest.raises(FormulaError, match=f"the function {name} is not known to xlmc") as caught:
+    with pytest.raises(FormulaError, match=f"The function {name} is not known to xlmc") as caught:
         _of(book, f"{name}(A1)")
     assert str(caught.value.where) == "S!B1"
 

@@ -109,7 +109,7 @@ def test_ranges_that_others_read_hold_the_settled_values(iterated):
 
 def test_an_array_formula_in_a_circle_is_refused(lower):
     array = CellContent(0.0, Formula("A1+C1*{1;2}", 1, 2, array=parse_address("S!B1:B2")))
-    with pytest.raises(FormulaError, match="S!B1: an array formula is in a circle"):
+    with pytest.raises(FormulaError, match="S!B1: An array formula is in a circle"):
         lower({"A1": 1.0, "B1": array, "C1": "=B2"}, ["A1"], ["C1"], iteration=FINE)
 
 

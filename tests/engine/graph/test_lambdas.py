@@ -231,15 +231,15 @@ def test_a_cell_that_shows_calc_is_read_as_such(workbook):
 @pytest.mark.parametrize(
     ("formula", "message"),
     [
-        ("1+LAMBDA(x,x)", "nothing calls this LAMBDA"),
-        ("SUM(MAP(A1:A3,LAMBDA(x,LAMBDA(y,x))))", "nothing calls this LAMBDA"),
-        ("LET(f,5,f(2))", "what is called here is no LAMBDA"),
-        ("SUM(MAP(A1:A3,5))", "what is called here is no LAMBDA"),
-        ("Number(2)", "the function NUMBER is not known"),
-        ("Nowhere!Twice(2)", "there is no sheet 'Nowhere'"),
-        ("Other!Nothing(2)", "there is no name 'Nothing'"),
-        ("SUM(MAKEARRAY(A1,1,LAMBDA(r,c,r)))", "the size of an array must be a fixed number"),
-        ("SUM(B1:INDEX(B1:B3,A1))", "an end of a range must be fixed"),
+        ("1+LAMBDA(x,x)", "Nothing calls this LAMBDA"),
+        ("SUM(MAP(A1:A3,LAMBDA(x,LAMBDA(y,x))))", "Nothing calls this LAMBDA"),
+        ("LET(f,5,f(2))", "What is called here is not a LAMBDA"),
+        ("SUM(MAP(A1:A3,5))", "What is called here is not a LAMBDA"),
+        ("Number(2)", "The function NUMBER is not known"),
+        ("Nowhere!Twice(2)", "There is no sheet 'Nowhere'"),
+        ("Other!Nothing(2)", "There is no name 'Nothing'"),
+        ("SUM(MAKEARRAY(A1,1,LAMBDA(r,c,r)))", "The size of an array must be a fixed number"),
+        ("SUM(B1:INDEX(B1:B3,A1))", "An end of a range must be fixed"),
     ],
 )
 def test_what_is_refused_with_its_cell(book, formula, message):

@@ -88,7 +88,7 @@ def test_a_formula_that_gives_nothing_gives_zero(lower):
 
 
 REFUSED = [
-    ("SQTR(A1)", "the function SQTR is not known to xlmc", "did you mean SQRT?"),
+    ("SQTR(A1)", "The function SQTR is not known to xlmc", "did you mean SQRT?"),
     (
         "MyOwn.Macro(A1)",
         "the function MYOWN.MACRO is not known to xlmc",
@@ -119,7 +119,7 @@ def test_where_no_assumption_reaches_the_saved_value_stands_in(lower):
     assert lowering.known(varying) is None
     (notice,) = lowering.notices
     assert str(notice.where) == "S!B2"
-    assert "the function MYFUNC is not known to xlmc" in notice.message
+    assert "The function MYFUNC is not known to xlmc" in notice.message
     assert "Excel's saved value is used" in notice.message
     assert lowering.saved == {parse_address("S!B2"): 42.0}
 

@@ -183,7 +183,7 @@ def test_items_that_vary(book, engine):
 
 REFUSED = {
     "its source varies": ('GETPIVOTDATA("Cost",P!A4)', "made from a cell that varies"),
-    "no pivot table": ('GETPIVOTDATA("Cost",P!K4)', "no pivot table that can be read"),
+    "no pivot table": ('GETPIVOTDATA("Cost",P!K4)', "No pivot table that can be read"),
     "an empty cell": ('GETPIVOTDATA("Sales",P!E4,"Date",2)', "is empty"),
     "a field that varies": ('GETPIVOTDATA(IF(A1>0,"Cost",""),P!A4)', "field that varies"),
 }

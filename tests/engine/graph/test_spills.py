@@ -114,14 +114,14 @@ GROWING = "_xlfn._xlws.FILTER(A1:A3,A1:A3>1)"
 @pytest.mark.parametrize("formula", ["SUM(H1:H3)", "COUNT(H:H)", "H2+H3", "SUM(Above)", "A1+H3", "COUNTA(H3:H9)+A1"])
 def test_cells_that_a_spill_may_fill_beyond_the_saved_ones_are_refused(book, formula):
     cells = {**CELLS, **spilling(GROWING, (1, 8, 2, 8), 2.0, 3.0), "J1": f"={formula}"}
-    with pytest.raises(FormulaError, match=r"S!J1: the formula names cells .* S!H1 may fill, .* by H1#"):
+    with pytest.raises(FormulaError, match=r"S!J1: The formula names cells .* S!H1 may fill, .* by H1#"):
         book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"}, names={"Above": "S!$H$2:$H$4"})
 
 
 @pytest.mark.parametrize("formula", ["SUM(OFFSET(H1,0,0,4,1))", 'AVERAGE(INDIRECT("H1:H3"))'])
 def test_so_are_those_that_offset_and_indirect_read(book, formula):
     cells = {**CELLS, **spilling(GROWING, (1, 8, 2, 8), 2.0, 3.0), "J1": f"={formula}"}
-    with pytest.raises(FormulaError, match=r"S!H1: this dynamic array may fill more than the H1:H2 .* H1:H[34] by "):
+    with pytest.raises(FormulaError, match=r"S!H1: This dynamic array may fill more than the H1:H2 .* H1:H[34] by "):
         book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1"})
 
 

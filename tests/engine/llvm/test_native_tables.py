@@ -83,7 +83,7 @@ def test_rows_of_a_sheet_share_tables_and_code(book, monkeypatch, side_by_side, 
         model, names, codes = built(book, formula)
         found = outcome_of(simulated(model, TRIALS, 5, engine="jit"))
     assert "picked" in names
-    assert not {"ATAN", "SIN", "EXP", "^", "LN", "the cell found"} & {*names}
+    assert not {"ATAN", "SIN", "EXP", "^", "LN", "The cell found"} & {*names}
     with monkeypatch.context() as patch, side_by_side(0):
         computing(patch)
         computed, _, codes_of_computed = built(book, formula)

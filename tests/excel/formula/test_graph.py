@@ -73,7 +73,7 @@ def test_a_blank_input_within_an_area_is_reached(graph_of):
 
 
 def test_a_faulty_cell_that_is_needed(graph_of):
-    with pytest.raises(FormulaError, match="there is no sheet 'Nothing'") as caught:
+    with pytest.raises(FormulaError, match="There is no sheet 'Nothing'") as caught:
         graph_of(CELLS, ["D1"])
     assert caught.value.where == "S!D1"
 

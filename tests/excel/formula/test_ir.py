@@ -31,4 +31,4 @@ def test_nodes_are_frozen():
 
 def test_an_error_knows_its_cell():
     error = FormulaError("wrong", text="A1+", span=(3, 4)).at("S!B7")
-    assert str(error) == "S!B7: wrong.\n    =A1+\n        ^"
+    assert str(error) == "S!B7: Wrong.\n    =A1+\n        ^"

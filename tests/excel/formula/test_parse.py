@@ -365,5 +365,5 @@ def test_what_formulas_compiles_itself(text, values, expected):
     ("text", "values"), [("NOSUCH(A1)", {"A1": 1.0}), ("#SPILL!", {}), ("(A1,B1)", {"A1": 1.0, "B1": 2.0})]
 )
 def test_what_formulas_cannot_compute(text, values):
-    with pytest.raises(FormulaError, match="the engine `formulas` cannot compute this"):
+    with pytest.raises(FormulaError, match="The engine `formulas` cannot compute this"):
         compile_with_formulas(text)(values)

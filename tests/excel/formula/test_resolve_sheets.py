@@ -66,7 +66,7 @@ def test_off_the_sheet_it_is_an_error_on_each(workbook):
         ("'Its'!A1", "there is no sheet 'Its'", 'did you mean "It\'s"?'),
         (
             "SUM([1]Jan:Dec!A1)",
-            "refers to another workbook",
+            "the formula refers to another workbook",
             "copy the value into this workbook; links are not followed",
         ),
         ("Winter!Rate", "there is no sheet 'Winter'", None),

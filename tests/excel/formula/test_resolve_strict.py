@@ -47,7 +47,7 @@ def see(workbook, shown):
 def test_a_name_that_is_not_there(see, text):
     assert see(text, strict=False) == MISSING[text]
     if text != "Gone(2)":
-        with pytest.raises(FormulaError, match="there is no name"):
+        with pytest.raises(FormulaError, match="There is no name"):
             see(text, strict=True)
 
 
@@ -61,9 +61,9 @@ def test_what_is_there_is_the_same(see, text, strict):
 @pytest.mark.parametrize(
     ("text", "message"),
     [
-        ("1+", "the formula cannot be read"),
-        ("[1]!Rate", "refers to another workbook"),
-        ("Loop", "the name 'Loop' is defined by itself"),
+        ("1+", "The formula cannot be read"),
+        ("[1]!Rate", "The formula refers to another workbook"),
+        ("Loop", "The name 'Loop' is defined by itself"),
         ("1 2", "needs references on both sides"),
         ("LET(1,2,3)", "LET needs a name"),
     ],

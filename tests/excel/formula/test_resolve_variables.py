@@ -138,7 +138,7 @@ def test_what_they_mean_elsewhere(see, text, at, expected):
         ("LAMBDA(a,b)(1)", "there is no name 'b'", None),
         ("LET(v,1,Hidden)", "there is no name 'v'", None),
         ("LET(hiden,1,hidn)", "there is no name 'hidn'", "did you mean 'Hidden'?"),
-        ("Loop", "the name 'Loop' is defined by itself", None),
+        ("Loop", "the name 'Loop' is defined by itself", "correct it under Formulas ▸ Name Manager"),
     ],
 )
 def test_what_may_not_be(resolved, text, message, hint):

@@ -180,7 +180,7 @@ def test_a_row_that_does_not_say_that_it_spills_is_refused_with_the_cell(door, t
 
 @pytest.mark.parametrize("formula", ["MADEUP.CURVE(A1)", "SUM(MADEUP.PARTS(A1))"])
 def test_the_engine_of_the_package_formulas_refuses_it_with_the_cell(door, tmp_path, formula):
-    assert "the engine `formulas` cannot compute this" in _refusal(formula, "formulas", tmp_path)
+    assert "The engine `formulas` cannot compute this" in _refusal(formula, "formulas", tmp_path)
 
 
 @pytest.mark.parametrize("formula", ["MADEUP.SIZE(A:A)", "MADEUP.SIZE((A:A>1)*1)"])

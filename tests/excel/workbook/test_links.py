@@ -85,12 +85,12 @@ def test_the_stored_value_is_used(linked, formula):
 
 
 REFUSED = {
-    "[2]Prices!A1": "refers to another workbook",
-    "[1]Empty!A1": "refers to prices.xlsx, of which no values are stored",
-    "[1]Nowhere!A1": "refers to prices.xlsx, of which no values are stored",
-    "[1]!Gone": "refers to 'Gone' of prices.xlsx, which is not stored",
-    "[1]!Nothing": "refers to 'Nothing' of prices.xlsx, which is not stored",
-    "SUM([1]Prices:Empty!A1)": "refers to several sheets of another workbook",
+    "[2]Prices!A1": "the formula refers to another workbook",
+    "[1]Empty!A1": "the formula refers to prices.xlsx, of which no values are stored",
+    "[1]Nowhere!A1": "the formula refers to prices.xlsx, of which no values are stored",
+    "[1]!Gone": "the formula refers to 'Gone' of prices.xlsx, which is not stored",
+    "[1]!Nothing": "the formula refers to 'Nothing' of prices.xlsx, which is not stored",
+    "SUM([1]Prices:Empty!A1)": "the formula refers to several sheets of another workbook",
 }
 
 

@@ -37,14 +37,14 @@ def test_folders_are_no_parts():
 
 
 REFUSED = {
-    "nothing": (b"", "the file is empty"),
+    "nothing": (b"", "The file is empty"),
     "text": (b"a,b\n1,2\n", "not an Excel workbook"),
     "an .xls": (bytes.fromhex("D0CF11E0A1B11AE1") + b"Workbook", "old Excel workbook"),
     "a password": (
         bytes.fromhex("D0CF11E0A1B11AE1") + bytes(504) + "EncryptedPackage".encode("utf-16-le"),
-        "the workbook is encrypted",
+        "The workbook is encrypted",
     ),
-    "a cut": (GOOD[: len(GOOD) // 2], "the file is damaged"),
+    "a cut": (GOOD[: len(GOOD) // 2], "The file is damaged"),
     "a changed byte": (packed(("a.xml", b"<speed/>")).replace(b"<speed/>", b"<spend/>", 1), "Bad CRC-32"),
     "a double": (packed(("xl/a.xml", b"1"), ("xl/a.xml", b"2")), "holds the part 'xl/a.xml' twice"),
     "a double in another case": (packed(("xl/a.xml", b"1"), ("XL/A.xml", b"2")), "holds the part 'XL/A.xml' twice"),
@@ -75,8 +75,8 @@ def test_within_limits():
     ("limits", "message"),
     [
         (replace(JUST_ENOUGH, entries=3), "holds 4 parts; xlmc reads up to 3"),
-        (replace(JUST_ENOUGH, part=7), r"the part '\[Content_Types\].xml' unpacks to more"),
-        (replace(JUST_ENOUGH, total=14), "the file unpacks to more"),
+        (replace(JUST_ENOUGH, part=7), r"The part '\[Content_Types\].xml' unpacks to more"),
+        (replace(JUST_ENOUGH, total=14), "The file unpacks to more"),
     ],
 )
 def test_beyond_limits(limits, message):
@@ -95,7 +95,7 @@ def test_a_zip_password_is_named():
     data = bytearray(packed(("a.xml", b"<a/>")))
     directory = data.index(b"PK\1\2")
     data[directory + 8] |= 1  # general purpose flags
-    with pytest.raises(WorkbookError, match=r"the part 'a.xml' is encrypted"):
+    with pytest.raises(WorkbookError, match=r"The part 'a.xml' is encrypted"):
         read_parts(bytes(data))
 
 

@@ -97,7 +97,7 @@ def test_date_systems(tmp_path, date1904):
 
 
 def test_a_file_that_is_not_there(tmp_path):
-    with pytest.raises(WorkbookError, match="there is no such file") as caught:
+    with pytest.raises(WorkbookError, match="There is no such file") as caught:
         read_workbook(tmp_path / "none.xlsx")
     assert caught.value.where == str(tmp_path / "none.xlsx")
 
@@ -118,21 +118,21 @@ def test_a_file_of_another_person(tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("name", ["a\0b.xlsx", "x" * 5000])
 def test_a_name_no_file_can_have(name):
-    with pytest.raises(WorkbookError, match="the file cannot be read"):
+    with pytest.raises(WorkbookError, match="The file cannot be read"):
         read_workbook(name)
 
 
 @pytest.mark.skipif(not os.path.exists("/dev/zero"), reason="needs an endless file")
 def test_an_endless_file(monkeypatch):
     monkeypatch.setattr("xlmc.excel.workbook.reader.LIMITS", type("Small", (), {"total": 1 << 20}))
-    with pytest.raises(WorkbookError, match="the file is larger than 1 MB"):
+    with pytest.raises(WorkbookError, match="The file is larger than 1 MB"):
         read_workbook("/dev/zero")
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs a named pipe")
 def test_a_pipe_is_not_waited_for(tmp_path):
     os.mkfifo(tmp_path / "pipe.xlsx")
-    with pytest.raises(WorkbookError, match="this is a pipe, not a file"):
+    with pytest.raises(WorkbookError, match="This is a pipe, not a file"):
         read_workbook(tmp_path / "pipe.xlsx")
 
 
@@ -174,7 +174,7 @@ def test_complaints_name_the_file(tmp_path):
     with pytest.raises(WorkbookError) as caught:
         read_workbook(path)
     assert str(caught.value) == (
-        f"{path}: the file is plain text (such as .csv), not an Excel workbook. "
+        f"{path}: The file is plain text (such as .csv), not an Excel workbook. "
         "Open it in Excel and save it as an Excel Workbook (.xlsx)."
     )
 
@@ -233,26 +233,26 @@ def test_external_links_name_their_files_and_how_old_their_values_are(book, rels
         "docProps/core.xml": "<c><dcterms:modified xsi:type='x'>2019-03-04T10:00:00Z</dcterms:modified></c>",
     }
     assert messages(book(in_workbook=REFERENCE, rels=[LINK], more=more)) == [
-        f"book.xlsx: the workbook links to other files (Other.xlsx), {READS}, of 2019-03-04 or older"
+        f"book.xlsx: The workbook links to other files (Other.xlsx), {READS}, of 2019-03-04 or older"
     ]
 
 
 def test_external_links_without_a_file_or_a_date(book):
     more = {"xl/externalLinks/externalLink1.xml": "<externalLink/>"}
     assert messages(book(rels=[LINK], more=more)) == [
-        f"book.xlsx: the workbook links to other files, {READS}, at a time that the file does not tell"
+        f"book.xlsx: The workbook links to other files, {READS}, at a time that the file does not tell"
     ]
 
 
 def test_signatures(book, rels):
     pointers = rels(("w", "officeDocument", "xl/workbook.xml"), ("s", SIGNED, "_xmlsignatures/origin.sigs"))
     (found,) = messages(book(more={"_rels/.rels": pointers, "_xmlsignatures/origin.sigs": b""}))
-    assert found.startswith("book.xlsx: the workbook is digitally signed")
+    assert found.startswith("book.xlsx: The workbook is digitally signed")
 
 
 def test_names_of_no_sheet(book):
     (found,) = messages(book(in_workbook="<definedNames><definedName name='x' localSheetId='7'/></definedNames>"))
-    assert found.startswith("book.xlsx: the defined name 'x' belongs to a sheet that does not exist")
+    assert found.startswith("book.xlsx: The defined name 'x' belongs to a sheet that does not exist")
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])

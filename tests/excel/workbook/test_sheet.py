@@ -178,12 +178,12 @@ def test_elements_of_other_namespaces_are_not_cells():
 @pytest.mark.parametrize(
     ("cell", "message"),
     [
-        ('<c r="B7"><v>fast</v></c>', "the cell holds 'fast' where a number should be"),
-        ('<c r="B7" t="s"><v>2</v></c>', "the cell holds a text that the workbook does not"),
-        ('<c r="B7" t="q"><v>2</v></c>', "the cell is of the unknown type 'q'"),
-        ('<c r="B7"><f t="shared" si="4"/><v>2</v></c>', "the cell shares formula 4, which no earlier cell holds"),
+        ('<c r="B7"><v>fast</v></c>', "The cell holds 'fast' where a number should be"),
+        ('<c r="B7" t="s"><v>2</v></c>', "The cell holds a text that the workbook does not"),
+        ('<c r="B7" t="q"><v>2</v></c>', "The cell is of the unknown type 'q'"),
+        ('<c r="B7"><f t="shared" si="4"/><v>2</v></c>', "The cell shares formula 4, which no earlier cell holds"),
         ('<c r="B7"><f t="shared"/><v>2</v></c>', "shares a formula without a number, which no earlier cell holds"),
-        ('<c r="B7"><v>1</v></c><c r="B7"><v>2</v></c>', "the cell stands in the file twice"),
+        ('<c r="B7"><v>1</v></c><c r="B7"><v>2</v></c>', "The cell stands in the file twice"),
     ],
 )
 def test_complaints_name_the_cell(cell, message):
@@ -195,13 +195,13 @@ def test_complaints_name_the_cell(cell, message):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ('<row r="1"><c r="1A"/></row>', "a cell of sheet 'My sheet' has the address '1A'"),
+        ('<row r="1"><c r="1A"/></row>', "A cell of sheet 'My sheet' has the address '1A'"),
         ('<row r="1"><c r="$A$1"/></row>', "has the address"),
         ('<row r="1"><c r="XFE1"/></row>', "lies outside the sheet"),
         ('<row r="1"><c r="A1048577"/></row>', "lies outside the sheet"),
         ('<row r="1048577"><c/></row>', "lies outside the sheet"),
         ("<c/>", "lies outside the sheet"),
-        ('<row r="0"/>', "a row of sheet 'My sheet' has the number '0'"),
+        ('<row r="0"/>', "A row of sheet 'My sheet' has the number '0'"),
         ('<row r="-1"/>', "has the number '-1'"),
         (
             '<row r="1"><c r="A1"><f t="array">B1</f></c></row>',

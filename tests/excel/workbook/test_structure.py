@@ -65,7 +65,7 @@ def test_names_count_every_tab_also_those_without_cells(with_chart):
         DefinedName("_xlnm.Print_Area", "Inputs!$A$1:$B$2", "Inputs"),
     )
     assert [notice.message for notice in found.left_out] == [
-        f"the defined name {name!r} belongs to a sheet that does not exist and is left out" for name in ("Lost", "Gone")
+        f"The defined name {name!r} belongs to a sheet that does not exist and is left out" for name in ("Lost", "Gone")
     ]
 
 
@@ -124,12 +124,12 @@ SHEET = '<sheet name="{}" sheetId="1" r:id="{}"/>'.format
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        ({"_rels/.rels": "<Relationships/>"}, "the file is a zip, but not an Excel workbook"),
+        ({"_rels/.rels": "<Relationships/>"}, "The file is a zip, but not an Excel workbook"),
         ({"xl/workbook.xml": f"<w:document xmlns:w='{MAIN}'/>"}, "an Office document, but not a workbook"),
         ({"xl/workbook.xml": "PK"}, "xl/workbook.xml is not well-formed XML"),
-        ({"xl/workbook.xml": WORKBOOK(SHEET("A", "none"))}, "the sheet 'A' is missing from the file"),
-        ({"xl/workbook.xml": WORKBOOK(SHEET("A", "s1") + SHEET("a", "s2"))}, "the sheet 'A' is in the file twice"),
-        ({"xl/workbook.xml": WORKBOOK(SHEET("A", "s1") + SHEET("B", "s1"))}, "the sheet 'A' is in the file twice"),
+        ({"xl/workbook.xml": WORKBOOK(SHEET("A", "none"))}, "The sheet 'A' is missing from the file"),
+        ({"xl/workbook.xml": WORKBOOK(SHEET("A", "s1") + SHEET("a", "s2"))}, "The sheet 'A' is in the file twice"),
+        ({"xl/workbook.xml": WORKBOOK(SHEET("A", "s1") + SHEET("B", "s1"))}, "The sheet 'A' is in the file twice"),
     ],
 )
 def test_complaints(structure, more, message):
@@ -178,7 +178,7 @@ def test_a_table(attributes, rows):
         ('ref="A1:B2" headerRowCount="one"', "does not fit"),
         ('ref="A1:B2" totalsRowCount="-1"', "does not fit"),
         (f'ref="A1:B2" totalsRowCount="{"9" * 5000}"', "does not fit"),
-        ('ref="somewhere"', "the table 'T' of sheet 'S' has no valid range"),
+        ('ref="somewhere"', "The table 'T' of sheet 'S' has no valid range"),
         ("", "has no valid range"),
     ],
 )
@@ -203,7 +203,7 @@ def test_tables_are_found_through_the_sheet(rels):
 
 def test_a_missing_table_is_told(rels):
     parts = {"xl/worksheets/_rels/sheet1.xml.rels": rels(("r1", "table", "../tables/table1.xml")).encode()}
-    with pytest.raises(WorkbookError, match="a table of sheet 'S' is missing"):
+    with pytest.raises(WorkbookError, match="A table of sheet 'S' is missing"):
         list(tables_of(parts, PART, "S"))
 
 

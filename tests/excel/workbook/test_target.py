@@ -39,7 +39,7 @@ def test_a_new_file_and_our_own_may_be_written(tmp_path):
 )
 def test_what_others_wrote_is_replaced_only_when_asked_for(tmp_path, name, content, reason):
     path = page(tmp_path / name, content)
-    with pytest.raises(TakenError, match=f"the file exists already, and {reason}.*--overwrite") as caught:
+    with pytest.raises(TakenError, match=f"The file exists already, and {reason}.*--overwrite") as caught:
         Target(path, "case.xlsx").check()
     assert caught.value.where == str(path)
     Target(path, "case.xlsx", overwrite=True).check()
@@ -50,7 +50,7 @@ def test_a_file_that_is_read_is_spared_whatever_is_asked_for(tmp_path):
     book.write_bytes(b"mine")
     page.symlink_to(book)
     for path in (book, page):
-        with pytest.raises(TakenError, match="this is the file that is read"):
+        with pytest.raises(TakenError, match="This is the file that is read"):
             Target(path, "", overwrite=True, read=[tmp_path / "none.xlsx", book]).check()
 
 
@@ -69,9 +69,9 @@ def test_a_file_that_cannot_be_read_is_not_ours(tmp_path, monkeypatch):
 @pytest.mark.parametrize(
     ("make", "message"),
     [
-        (lambda path: path.mkdir(), "this is a folder, not a file"),
-        (lambda path: path.symlink_to("nowhere.html"), r"this is a link to '.*nowhere\.html', which is not there"),
-        (os.mkfifo, "this is a device or a pipe"),
+        (lambda path: path.mkdir(), "This is a folder, not a file"),
+        (lambda path: path.symlink_to("nowhere.html"), r"This is a link to '.*nowhere\.html', which is not there"),
+        (os.mkfifo, "This is a device or a pipe"),
         (lambda path: page(path).chmod(0o444), "read-only"),
     ],
 )
@@ -138,7 +138,7 @@ def test_two_outputs_in_one_file_are_refused(tmp_path, monkeypatch, second):
     first = page(tmp_path / "a.csv")
     (tmp_path / "link.csv").symlink_to("a.csv")
     (tmp_path / "hard.csv").hardlink_to(first)
-    with pytest.raises(WorkbookError, match="two outputs would be written to this file"):
+    with pytest.raises(WorkbookError, match="Two outputs would be written to this file"):
         refuse_same_file([first, tmp_path / "c.csv", type(first)(second)])
 
 

@@ -79,7 +79,7 @@ def test_the_system_says_which_folder_two_dots_mean(tmp_path):
 @pytest.mark.parametrize("write", [check_folder, lambda path: write_workbook(path, b"new")])
 def test_a_folder_that_does_not_exist_has_no_folder_above_it(tmp_path, write):
     (tmp_path / "book.xlsx").write_bytes(b"old")
-    with pytest.raises(WorkbookError, match="there is no folder"):
+    with pytest.raises(WorkbookError, match="There is no folder"):
         write(tmp_path / "missing" / ".." / "book.xlsx")
     assert (tmp_path / "book.xlsx").read_bytes() == b"old"
 
@@ -87,8 +87,8 @@ def test_a_folder_that_does_not_exist_has_no_folder_above_it(tmp_path, write):
 @pytest.mark.parametrize(
     ("code", "message"),
     [
-        (errno.ENOSPC, "the disk is full"),
-        (errno.EDQUOT, "the disk is full"),
+        (errno.ENOSPC, "The disk is full"),
+        (errno.EDQUOT, "The disk is full"),
         (errno.EACCES, "in use or may not be written"),
         (errno.EPERM, "in use or may not be written"),
         (errno.EROFS, "in use or may not be written"),
@@ -124,14 +124,14 @@ def test_an_interrupted_write_leaves_the_old_file_and_no_other(tmp_path, monkeyp
 
 
 def test_a_missing_folder_is_named(tmp_path):
-    with pytest.raises(WorkbookError, match="there is no folder") as caught:
+    with pytest.raises(WorkbookError, match="There is no folder") as caught:
         write_workbook(tmp_path / "nowhere" / "book.xlsx", b"")
     assert str(tmp_path / "nowhere") in caught.value.message
 
 
 def test_a_file_in_place_of_the_folder_is_no_folder(tmp_path):
     (tmp_path / "file").write_bytes(b"")
-    with pytest.raises(WorkbookError, match="there is no folder"):
+    with pytest.raises(WorkbookError, match="There is no folder"):
         write_workbook(tmp_path / "file" / "book.xlsx", b"")
 
 

@@ -59,8 +59,11 @@ def test_what_is_asked_for(given, expected):
         ({"precision": 1, "confidence": "high"}, "'high' is not a confidence level"),
         ({"precision_of": "mean"}, "no precision was given"),
         ({"confidence": 95}, "no precision was given"),
-        ({"forecasts": "x"}, "forecasts to look at are named, but not what for"),
-        ({"until_accepted": 5, "forecasts": "x"}, "forecasts to look at are named, but not what for"),
+        ({"forecasts": "x"}, "orecasts are named, and no precision or stable digits are asked for of them"),
+        (
+            {"until_accepted": 5, "forecasts": "x"},
+            "orecasts are named, and no precision or stable digits are asked for of them",
+        ),
         ({"until_accepted": 5, "adaptive": 1}, "accepted trials and stable digits were both asked for"),
         ({"until_accepted": 5, "precision": 1}, "accepted trials and a precision were both asked for"),
         ({"time_limit": 0}, "'0' is not a length of time"),

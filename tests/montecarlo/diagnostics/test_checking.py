@@ -123,15 +123,15 @@ def test_an_assumption_that_only_a_check_needs_is_held_at_its_base_value(checked
 def test_a_check_of_a_blank_assumption_cell_is_refused(checked):
     cells = {**CELLS, "A3": None, "C1": "=AND(A1<2,A3<0.6)"}
     inputs = {**INPUTS, "extra": {"cell": "A3", "low": 0, "high": 1}}
-    with pytest.raises(DefinitionError, match=r"S!A3: the checks need 'extra'.*Type its base value into the cell"):
+    with pytest.raises(DefinitionError, match=r"S!A3: The checks need 'extra'.*Type its base value into the cell"):
         checked(cells, {"both": "C1"}, inputs)
 
 
 def test_what_the_checks_hold_is_said(checked):
     inputs = {**INPUTS, "extra": {"cell": "A3", "low": 0, "high": 1}, "idle": {"cell": "A2", "low": 0, "high": 1}}
     message = [str(notice) for notice in checked({**CELLS, "C1": "=A3<0.6"}, {"both": "C1"}, inputs).notices]
-    assert "S!A3: no forecast or filter needs the assumption 'extra': the checks take its base value" in message
-    assert "S!A2: no forecast or filter needs the assumption 'idle'" in message
+    assert "S!A3: No forecast or filter needs the assumption 'extra': the checks take its base value" in message
+    assert "S!A2: No forecast or filter needs the assumption 'idle'" in message
 
 
 @pytest.mark.parametrize(

@@ -100,7 +100,7 @@ def test_a_goal_rejects_and_weights_with_a_goal_are_refused(model):
     assert simulate(model(3.0), stopping=goal, evidence="auto").settings.evidence == "rejection"
     with pytest.raises(SimulationError, match="cannot weight its trials"):
         simulate(model(), stopping=goal, evidence="weights")
-    with pytest.raises(SimulationError, match="a run with scenarios cannot weight"):
+    with pytest.raises(SimulationError, match="A run with scenarios cannot weight"):
         simulate(model(), trials=10, evidence="weights", scenarios=True)
     with pytest.raises(SimulationError, match="'sometimes' is not a method to use evidence"):
         simulate(model(), trials=10, evidence="sometimes")

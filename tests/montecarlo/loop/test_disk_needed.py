@@ -71,7 +71,7 @@ def test_nobody_knows_how_long_a_run_with_another_goal_will_be(model, small_memo
 def test_a_disk_with_too_little_room_refuses_the_run_before_it_starts(model, small_memory, monkeypatch):
     monkeypatch.setattr(module, "free_disk", lambda: (Path("small"), 300_000))
     message, begun = [], []
-    with pytest.raises(SimulationError, match="the run needs about") as refused:
+    with pytest.raises(SimulationError, match="The run needs about") as refused:
         simulated(model, TRIALS, tell=message.append, progress=begun.append)
     assert (message, begun) == ([], [])
     assert refused.value.where == "small"

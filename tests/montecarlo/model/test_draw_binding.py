@@ -225,7 +225,7 @@ def test_the_cell_of_a_limit_keeps_its_formula_for_the_forecasts(book):
 
 def test_a_notice_says_what_was_done(book):
     model = book(CELLS, {"v": MEASURED}, {"x": "B1"})
-    text = "S!A1: computed from the base value of the assumption's own cell (100): Low 97, High 103"
+    text = "S!A1: Parameters are computed from the base value of the assumption's own cell (100): Low 97, High 103"
     assert [str(notice) for notice in model.notices] == [text]
     again = CompiledModel(model.workbook, model.definitions, model.path)
     assert [str(notice) for notice in again.notices] == [text]

@@ -151,8 +151,8 @@ def test_correlations_of_the_other_book_hold(books, tmp_path):
 @pytest.mark.parametrize(
     ("feeds", "message"),
     [
-        (["x=impact.xlsx!impact"], "there is no assumption 'x'"),
-        (["end=impact.xlsx!x"], "there is no forecast or assumption 'x'"),
+        (["x=impact.xlsx!impact"], "There is no assumption 'x'"),
+        (["end=impact.xlsx!x"], "There is no forecast or assumption 'x'"),
         (["end=impact.xlsx!other"], "have the units 'mph' and 'ft'"),
         (["end=impact.xlsx!impact", "END=impact.xlsx!impact"], "fed twice"),
         (["impact.xlsx!s=skid.xlsx!start"], "skid.xlsx: this is the workbook that is run, and it cannot feed itself"),

@@ -89,8 +89,8 @@ def test_values_that_may_be_older_than_their_formulas_are_calculated_again(workb
         for notice in after.notices
     }
     assert text == {
-        "S!A2": "the file says 'Speed 0', but the formula gives 'Speed 8'",
-        "S!C2": "the file says 0, but the formula gives 4",
-        "S!E2": "the file says FALSE, but the formula gives TRUE",
-        "S!B5": "the file says 0, but the formula gives 8000",
+        "S!A2": "The file says 'Speed 0', but the formula gives 'Speed 8'",
+        "S!C2": "The file says 0, but the formula gives 4",
+        "S!E2": "The file says FALSE, but the formula gives TRUE",
+        "S!B5": "The file says 0, but the formula gives 8000",
     }

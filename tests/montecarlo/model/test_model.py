@@ -23,7 +23,7 @@ def test_what_a_model_shows(model):
     assert [a.name for a in model.live] == ["Mass", "speed"]
     assert [f.name for f in model.forecasts] == ["Sum", "Root", "Text"]
     assert [f.name for f in model.filters] == ["f"]
-    assert [str(notice) for notice in model.notices] == ["S!A3: no forecast or filter needs the assumption 'idle'"]
+    assert [str(notice) for notice in model.notices] == ["S!A3: No forecast or filter needs the assumption 'idle'"]
     assert model.definitions.settings == Settings(trials=200_000, seed=999, sampling="mc", engine="numpy")
 
 
@@ -96,7 +96,7 @@ def test_an_assumption_that_nothing_needs_may_be_given(model):
 
 
 def test_a_name_that_is_no_assumption(model):
-    with pytest.raises(SimulationError, match="there is no assumption 'sped'"):
+    with pytest.raises(SimulationError, match="There is no assumption 'sped'"):
         model.function({"mass": 1.0, "speed": 1.0, "sped": 2.0})
 
 
@@ -104,7 +104,7 @@ def test_a_frozen_assumption_cannot_be_given(book):
     given = {"a": {"cell": "A1", "low": 0, "high": 1, "frozen": True}, "b": {"cell": "A2", "low": 0, "high": 1}}
     model = book({"A1": 5.0, "A2": 1.0, "B1": "=A1+A2"}, given, {"x": "B1"})
     assert model.function({"b": 1.0})["x"].tolist() == [6.0]
-    with pytest.raises(SimulationError, match="the assumption 'a' is frozen"):
+    with pytest.raises(SimulationError, match="The assumption 'a' is frozen"):
         model.function({"a": 2.0, "b": 1.0})
 
 
@@ -121,7 +121,7 @@ def test_dynamic_parameters_do_not_matter_to_the_function(book):
 
 
 @pytest.mark.parametrize(
-    ("formula", "message"), [("=NOSUCH(A1)", "the function NOSUCH is not known"), ("=Nothing!A1", "there is no sheet")]
+    ("formula", "message"), [("=NOSUCH(A1)", "The function NOSUCH is not known"), ("=Nothing!A1", "There is no sheet")]
 )
 def test_a_faulty_cell_is_told_of_when_the_model_is_made(book, formula, message):
     with pytest.raises(FormulaError, match=message) as caught:
@@ -168,5 +168,5 @@ def test_forecasts_that_do_not_vary_are_named_together(book):
     forecasts = {"moves": "B1"} | {f"f{row}": f"D{row}" for row in range(1, 7)}
     (notice,) = book(cells, {"a": {"cell": "A1", "low": 0, "high": 2}}, forecasts).notices
     assert notice.message == (
-        "the forecasts 'f1', 'f2', 'f3', 'f4' and 2 more do not vary: no assumption with a range reaches them"
+        "The forecasts 'f1', 'f2', 'f3', 'f4' and 2 more do not vary: no assumption with a range reaches them"
     )

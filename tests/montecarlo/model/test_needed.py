@@ -30,8 +30,8 @@ def test_only_assumptions_that_something_needs_are_drawn(scene):
     assert list(found.live) == ["A1", "A2"]
     assert names(found.idle) == ["A3", "A4"]
     assert [str(notice) for notice in found.notices()] == [
-        "S!A3: no forecast or filter needs the assumption 'A3'",
-        "S!A4: no forecast or filter needs the assumption 'A4'",
+        "S!A3: No forecast or filter needs the assumption 'A3'",
+        "S!A4: No forecast or filter needs the assumption 'A4'",
     ]
 
 

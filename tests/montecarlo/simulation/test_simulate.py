@@ -148,7 +148,7 @@ def test_draws_of_the_first_accepted_trials_are_kept(model, kept):
 
 def test_a_frame_never_holds_fewer_trials_than_were_accepted(model):
     run = simulated(model, 3000, keep_inputs=10)
-    with pytest.raises(SimulationError, match="the draws of 10 of"):
+    with pytest.raises(SimulationError, match="The draws of 10 of"):
         run.frame()
     frame = run.frame(inputs=False)
     assert list(frame) == list(FORECASTS)

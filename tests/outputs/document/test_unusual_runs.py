@@ -71,7 +71,7 @@ def test_a_letter_that_no_font_has_is_said_and_no_file_is_written(make, tmp_path
     simulation = make.simulate(
         {"A1": 1.0, "B1": "=A1*2"}, [make.uniform("a", "A1", 0, 1)], [make.forecast("b \U00011bff", "B1")]
     )
-    with pytest.raises(SimulationError, match="a PDF cannot be made") as refused:
+    with pytest.raises(SimulationError, match="A PDF cannot be made") as refused:
         Simulation(simulation).save_report(tmp_path / "report.pdf")
     assert "--docx" in str(refused.value)
     assert list(tmp_path.iterdir()) == []

@@ -155,14 +155,14 @@ def refused_without(run, key, message):
 )
 def test_a_record_without_the_goal_that_was_reached_is_refused(run_of, kind, key):
     assert run_of(kind).stopped.reached
-    refused_without(run_of(kind), f"settings.{key}", rf"the record lacks 'settings\.{key}'")
+    refused_without(run_of(kind), f"settings.{key}", rf"The record lacks 'settings\.{key}'")
 
 
 @pytest.mark.parametrize("asked", [{"until_accepted": 10_000}, {"precision": 1e-6}, {"adaptive": 6}])
 def test_a_record_without_the_goal_that_was_not_reached_is_refused(model, asked):
     run = simulated(model, trials=200, **asked)
     assert not run.stopped.reached
-    refused_without(run, f"settings.{next(iter(asked))}", "the record lacks the setting that asked for its goal, ")
+    refused_without(run, f"settings.{next(iter(asked))}", "The record lacks the setting that asked for its goal, ")
 
 
 def test_nothing_was_accepted_in_the_run_that_should_have_accepted_nothing(run_of):
@@ -381,9 +381,9 @@ def test_what_is_not_the_same_run(against, changes):
 UNREADABLE = {
     "an edited cell": ("cells[0]", '"Nome"', "are not those that were written"),
     "an edited number of cells": ("cells.count", 3, "are not those that were written"),
-    "a seed that is none": ("settings.seed", "x", "the settings in the record cannot be read"),
+    "a seed that is none": ("settings.seed", "x", "The settings in the record cannot be read"),
     "a number of trials that is none": ("settings.trials", 2.5, "2.5 is not a whole number"),
-    "a count that is none": ("counts.trials", "many", "the record counts 'many' trials"),
+    "a count that is none": ("counts.trials", "many", "The record counts 'many' trials"),
 }
 
 
@@ -407,7 +407,7 @@ def test_a_record_of_an_older_xlmc(typed, results):
 
 
 def test_no_record_and_two(edited):
-    refused(edited(lambda book: book.remove(book["Record"])), "the workbook holds no record of a run")
+    refused(edited(lambda book: book.remove(book["Record"])), "The workbook holds no record of a run")
     refused(edited(lambda book: book.copy_worksheet(book["Record"])), "each hold a record")
 
 
@@ -438,5 +438,5 @@ def test_a_record_without_one_of_its_sections_is_refused_by_name(typed, results)
     }
     assert keys
     book = typed(keys)
-    with pytest.raises(WorkbookError, match="the record lacks 'forecasts'"):
+    with pytest.raises(WorkbookError, match="The record lacks 'forecasts'"):
         replay(book)

@@ -103,7 +103,7 @@ def test_notices_and_sentences_stand_on_the_sheet(run, book, rows_of):
     assert error_sentence(run.model.workbook) in texts
     assert "The 51 % range is central: 24.5 % of the accepted trials lie below it, 24.5 % above." in texts
     assert "The base case has every assumption at the value in its cell." in texts
-    assert "S!A3: no forecast or filter needs the assumption 'idle'" in texts
+    assert "S!A3: No forecast or filter needs the assumption 'idle'" in texts
 
 
 @pytest.mark.parametrize("text", ["The workbook has no filters: every trial is accepted."])

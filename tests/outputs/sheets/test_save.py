@@ -101,7 +101,7 @@ def test_a_run_of_a_result_workbook_replaces_its_sheets(case, short_books, tmp_p
 
 def test_writing_into_the_workbook_itself_must_be_asked_for(case, short_books, book):
     before = book.read_bytes()
-    with pytest.raises(WorkbookError, match=r"this is the file that is read\. .*--in-place"):
+    with pytest.raises(WorkbookError, match=r"This is the file that is read\. .*--in-place"):
         save(case, book)
     assert book.read_bytes() == before
     save(case, book, overwrite=True)

@@ -87,7 +87,7 @@ def verify(workbook: Workbook, definitions: Definitions | None = None) -> Verifi
         definitions: checks only what its forecasts and filters need; every formula cell when None.
     """
     wanted = (
-        _all_formulas(workbook)
+        [*workbook.formula_cells()]
         if definitions is None
         else targets_of(definitions.forecasts, (*definitions.filters, *definitions.forecast_filters))
     )
@@ -103,15 +103,6 @@ def _lower(workbook: Workbook, wanted: Sequence[Cell]) -> Lowering:
         return Lowering(build_graph(resolver, wanted, frozenset(), more=more, strict=False), {}, {}, audit=True)
 
     return lower_until_complete(lower)
-
-
-def _all_formulas(workbook: Workbook) -> list[Cell]:
-    return [
-        Cell(sheet.name, row, column)
-        for sheet in workbook.sheets.values()
-        for (row, column), content in sheet.cells.items()
-        if content.formula is not None
-    ]
 
 
 def _has_formula(workbook: Workbook, cell: Cell) -> bool:

@@ -7,7 +7,7 @@ formula in another cell fills (`Spills`).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import chain
 from typing import Final, NamedTuple
@@ -23,7 +23,7 @@ from xlmc.excel.formula.stencil import Stencil
 from xlmc.excel.formula.strips import Needs, Part, Stretch, Strips
 from xlmc.excel.workbook.workbook import Workbook
 
-__all__ = ["BREAK", "Filled", "Graph", "Spills", "build_graph", "circle_error", "circular", "downstream"]
+__all__ = ["BREAK", "Filled", "Graph", "Spills", "build_graph", "circle_error", "circular", "downstream", "reached"]
 
 BREAK: Final = "break the circle, or turn on iterative calculation in Excel's options, if it is meant"
 """What to do about cells that need each other."""
@@ -249,6 +249,23 @@ def _varying(formulas: Iterable[Cell], needs: Needs, inputs: Iterable[Cell]) -> 
                 varying.add(cell)
                 break
     return frozenset(varying)
+
+
+def reached(start: Iterable[Cell], following: Callable[[Cell], Iterable[Cell]]) -> Iterator[Cell]:
+    """Yield these cells and all that they lead to, each once.
+
+    Args:
+        start: the first ones.
+        following: the cells that a cell leads to, such as those that it needs.
+    """
+    seen: set[Cell] = set()
+    open_ = list(start)
+    while open_:
+        cell = open_.pop()
+        if cell not in seen:
+            seen.add(cell)
+            yield cell
+            open_ += following(cell)
 
 
 def downstream(needs: Needs, inputs: Iterable[Cell]) -> frozenset[Cell]:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from typing import Final, assert_never
 
 from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_number
 from xlmc.excel.formula import ir
 from xlmc.excel.workbook.workbook import Formula, Workbook
 
-__all__ = ["LOOKED_AT", "mentioned", "references"]
+__all__ = ["LOOKED_AT", "mentioned", "mentioned_cells", "references"]
 
 LOOKED_AT: Final = frozenset(
     {
@@ -89,6 +89,14 @@ def mentioned(formula: Formula, cell: Cell, workbook: Workbook) -> Iterator[Area
         workbook: whose sheets, names and tables are meant.
     """
     yield from _in_text(formula.text, cell, (cell.row - formula.row, cell.column - formula.column), workbook, set())
+
+
+def mentioned_cells(workbook: Workbook, cell: Cell, among: Collection[Cell]) -> Iterator[Cell]:
+    """Yield the cells that a cell's formula mentions: of areas with more cells than `among`, those of these alone."""
+    formula = workbook.content(cell).formula
+    for area in () if formula is None else mentioned(formula, cell, workbook):
+        few = area.rows * area.columns <= len(among)
+        yield from area.cells() if few else (each for each in among if each in area)
 
 
 def _in_text(text: str, host: Cell, shift: tuple[int, int], workbook: Workbook, open_names: set[str]) -> Iterator[Area]:

@@ -344,6 +344,11 @@ class Workbook:
                 return local
         return self._names.get((None, name.casefold()))
 
+    def formula_cells(self) -> Iterator[Cell]:
+        """Yield the cells that hold a formula, sheet by sheet."""
+        for sheet in self.sheets.values():
+            yield from (Cell(sheet.name, *at) for at, content in sheet.cells.items() if content.formula is not None)
+
     def sheet_of(self, cell: Cell | Area) -> Sheet | None:
         """Return the sheet that a resolved cell or area stands on, one of a linked workbook among them."""
         found = self.sheets.get(cell.sheet)

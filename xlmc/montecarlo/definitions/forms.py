@@ -208,7 +208,7 @@ class Form:
             return 1.0 if error < 2.0 else None
         if self.kind is not Kind.DATE:
             return None
-        code = _QUOTED.sub(lambda found: found[0] if found[0].startswith("[") else "", self.moment_code).casefold()
+        code = self._bare_moment_code
         least = 1.0 if "s" in code else float(_SECONDS_A_DAY)
         if "h" in code and "s" not in code:
             least = 60.0 if re.search(r"h\W*m", code) else 3600.0
@@ -234,7 +234,7 @@ class Form:
     @property
     def shows(self) -> str:
         """What the format shows of a moment: the `day`, the `time` of a day too, or a `span` without a day."""
-        code = _QUOTED.sub(lambda found: found[0] if found[0].startswith("[") else "", self.moment_code).casefold()
+        code = self._bare_moment_code
         if not re.search(r"[yd]", code):
             return "span"
         return "time" if re.search(r"[hs]", code) else "day"
@@ -243,6 +243,11 @@ class Form:
     def moment_code(self) -> str:
         """The format of dates: that of the cell, or ISO's."""
         return self.code if kind_of_format(self.code) is Kind.DATE else _DAY
+
+    @property
+    def _bare_moment_code(self) -> str:
+        """The format of dates without quoted texts, in small letters; spans such as `[h]` stay."""
+        return _QUOTED.sub(lambda found: found[0] if found[0].startswith("[") else "", self.moment_code).casefold()
 
     def _moment(self, value: float) -> str:
         """Write a date or time, to the second; a number where it is none."""

@@ -77,7 +77,7 @@ def proposals(
     Raises:
         DefinitionError: a cell that was asked for cannot be what it is asked for as, or nothing is found at all.
     """
-    formulas = [cell for cell in _formulas(book) if cell.sheet not in left_out and not _in_own_table(book, cell)]
+    formulas = [cell for cell in book.formula_cells() if cell.sheet not in left_out and not _in_own_table(book, cell)]
     if not formulas:
         hint = "Write the model as formulas first; xlmc new lists workbooks to begin with"
         raise DefinitionError("the workbook has no formula", where=book.name, hint=hint)
@@ -110,11 +110,6 @@ def proposals(
         max(0, len(ends) - most),
         tuple(passed),
     )
-
-
-def _formulas(book: Workbook) -> Iterator[Cell]:
-    for sheet in book.sheets.values():
-        yield from (Cell(sheet.name, *at) for at, content in sheet.cells.items() if content.formula is not None)
 
 
 def _in_own_table(book: Workbook, cell: Cell) -> bool:

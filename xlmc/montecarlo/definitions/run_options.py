@@ -146,7 +146,7 @@ class RunOptions:
 
     def _arguments(self, row: Setting, own: Settings) -> list[str]:
         value: Any = None if row.repeat == "never" else row.of(self)
-        stated = value is not None and (row.repeat == "always" or value != row.of(own))
+        stated = value not in (None, "") and (row.repeat == "always" or value != row.of(own))
         words = row.kind.arguments(row.options[-1], value) if stated else []
         return [*words, *self._goal_arguments()] if row.key == "trials" else words
 

@@ -15,6 +15,7 @@ from typing import Final
 from xlmc.errors import FormulaError
 from xlmc.excel.address import Area, Cell, host_of
 from xlmc.excel.formula import Graph, Resolver, build_graph, ir
+from xlmc.excel.formula.graph import reached
 from xlmc.excel.workbook.workbook import DataTable, Workbook
 from xlmc.montecarlo.definitions.problems import Findings
 
@@ -146,14 +147,7 @@ class _Upstream:
         return bool(aims) and any(cell in aims or self._may_be_anything(cell) for cell in self._of(table))
 
     def _of(self, table: DataTable) -> Iterator[Cell]:
-        seen: set[Cell] = set()
-        open_ = list(table.margins())
-        while open_:
-            cell = open_.pop()
-            if cell not in seen:
-                yield cell
-                seen.add(cell)
-                open_ += self._graph.needs.get(cell, ())
+        return reached(table.margins(), lambda cell: self._graph.needs.get(cell, ()))
 
     def _may_be_anything(self, cell: Cell) -> bool:
         return cell in self._graph.faults or _ANYWHERE.search(self._graph.text(cell)) is not None

@@ -11,12 +11,13 @@ from collections.abc import Collection, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
-from xlmc.engine.graph.arrays import size_of
 from xlmc.engine.graph.lowering import Lowering, lower_until_complete
+from xlmc.engine.saved_values import array_of, faults_of
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import Graph, Resolver, build_graph, ir
-from xlmc.excel.formula.precedents import mentioned, references
+from xlmc.excel.formula.graph import reached
+from xlmc.excel.formula.precedents import mentioned_cells, references
 from xlmc.excel.formula.substitute import substitute, unfold
 from xlmc.excel.workbook.injection.formula_values import with_values
 from xlmc.excel.workbook.workbook import CellValue, Workbook
@@ -120,15 +121,15 @@ class _Showing:
         self._workbook, self._trees = workbook, dict(at_base)
         self._missing, self._constants = dict(unavailable), constants
         self._start = constants | frozenset(shown)
-        self._formulas = frozenset(_formulas(workbook))
+        self._formulas = frozenset(workbook.formula_cells())
         inputs = self._start | unavailable.keys()
         whole = build_graph(Resolver(workbook, strict=False), self._formulas, inputs, strict=False)
-        self._needs: dict[Cell, set[Cell]] = {cell: set(needs) for cell, needs in whole.needs.items()}
-        for cell in whole.faults:
-            self._needs.setdefault(cell, set()).update(self._mentioned(cell))
+        self._users: dict[Cell, set[Cell]] = {}
+        self._add_needs(whole.needs)
+        among = self._formulas | self._missing.keys()
+        self._add_needs({cell: mentioned_cells(workbook, cell, among) for cell in whole.faults})
         looking = [cell for cell in whole.formulas if cell in self._formulas and _ANYWHERE.search(self._text(cell))]
-        for cell, found in self._looked_at(frozenset(looking)).items():
-            self._needs.setdefault(cell, set()).update(found)
+        self._add_needs(self._looked_at(frozenset(looking)))
 
     def answer(self, formulas: Mapping[Cell, ir.Expression], answers: Answers) -> None:
         """Put results instead of the calls that ask for them; what one is asked by may depend on others.
@@ -176,7 +177,7 @@ class _Showing:
             return found
         self._trees |= {site: tree for site, (_, tree) in sites.items()}
         for cell, tree in sites.values():
-            self._needs.setdefault(cell, set()).update(self._cells_of([tree]))
+            self._add_needs({cell: self._cells_of([tree])})
         changed = self._downstream(self._start - blocked) - self._downstream(self._missing) - blocked - self._constants
         lowering, faults = self._lowered(changed | sites.keys())
         for site, (cell, tree) in sites.items():
@@ -210,34 +211,34 @@ class _Showing:
 
     def found(self) -> ShownResults:
         """Compute until no further cell turns out to depend on a result, or to be one that cannot be computed."""
+        missing, changed = self._split()
         while True:
-            missing = self._downstream(self._missing)
-            changed = self._downstream(self._start) - missing - self._constants
+            before = missing, changed
             lowering, faults = self._lowered(changed)
-            for cell, needs in lowering.graph.needs.items():
-                self._needs.setdefault(cell, set()).update(needs)
+            self._add_needs(lowering.graph.needs)
             self._missing |= {
                 cell: reason for cell, reason in faults.items() if cell in changed or self._is_uncalculated(cell)
             }
-            now = self._downstream(self._missing), self._downstream(self._start)
-            if now[0] == missing and now[1] - missing - self._constants == changed:
+            missing, changed = self._split()
+            if (missing, changed) == before:
                 break
         values = {cell: _value(lowering, cell) for cell in sorted(changed & lowering.graph.formulas.keys())}
         reasons = {cell: self._missing.get(cell, _DEPENDS) for cell in sorted(missing)}
         return ShownResults({cell: value for cell, value in values.items() if value is not None}, reasons)
 
+    def _split(self) -> tuple[frozenset[Cell], frozenset[Cell]]:
+        """Return the cells that have no value, and those that change and have one."""
+        missing = self._downstream(self._missing)
+        return missing, self._downstream(self._start) - missing - self._constants
+
+    def _add_needs(self, needs: Mapping[Cell, Iterable[Cell]]) -> None:
+        for cell, needed in needs.items():
+            for need in needed:
+                self._users.setdefault(need, set()).add(cell)
+
     def _text(self, cell: Cell) -> str:
         formula = self._workbook.content(cell).formula
         return "" if formula is None else formula.text
-
-    def _mentioned(self, cell: Cell) -> Iterator[Cell]:
-        """Return those cells that a formula mentions and that cannot be read."""
-        formula = self._workbook.content(cell).formula
-        for area in () if formula is None else mentioned(formula, cell, self._workbook):
-            if area.rows * area.columns <= len(self._formulas):
-                yield from area.cells()
-            else:
-                yield from (each for each in self._formulas | self._missing.keys() if each in area)
 
     def _looked_at(self, cells: frozenset[Cell]) -> dict[Cell, set[Cell]]:
         """Return the cells that OFFSET and INDIRECT lead to in these formulas, by the values that Excel saved."""
@@ -259,23 +260,7 @@ class _Showing:
 
     def _downstream(self, start: Iterable[Cell]) -> frozenset[Cell]:
         """Return these cells, what array formulas in them fill, and all that depends on either."""
-        users: dict[Cell, list[Cell]] = {}
-        for cell, needs in self._needs.items():
-            for need in needs:
-                users.setdefault(need, []).append(cell)
-        seen: set[Cell] = set()
-        open_ = list(start)
-        while open_:
-            cell = open_.pop()
-            if cell not in seen:
-                seen.add(cell)
-                open_ += users.get(cell, ())
-                open_ += self._filled(cell)
-        return frozenset(seen)
-
-    def _filled(self, cell: Cell) -> Iterable[Cell]:
-        formula = self._workbook.content(cell).formula
-        return () if formula is None or formula.array is None else formula.array.cells()
+        return frozenset(reached(start, lambda cell: (*self._users.get(cell, ()), *array_of(self._workbook, cell))))
 
     def _lowered(self, targets: frozenset[Cell]) -> tuple[Lowering, dict[Cell, str]]:
         """Compute the cells from the results and from what Excel saved in all others; and say why some cannot be."""
@@ -296,7 +281,7 @@ class _Showing:
                     raise
                 stuck |= dict.fromkeys(found, error.message)
             else:
-                return lowering, stuck | _faults(lowering)
+                return lowering, stuck | faults_of(lowering, "cannot be computed from the results")
 
     def _given(self, targets: frozenset[Cell]) -> frozenset[Cell]:
         """Return the other formulas that were calculated, whose values are those that Excel saved."""
@@ -334,27 +319,6 @@ class _Watching(Lowering):
     def lower_cell(self, cell: Cell, tree: ir.Expression) -> int:
         self._asking = self.looked_at.setdefault(cell, set())
         return super().lower_cell(cell, tree)
-
-
-def _faults(lowering: Lowering) -> dict[Cell, str]:
-    """Return the cells that have no value of their own, each with the reason."""
-    found = {cell: error.message for cell, error in lowering.faults.items()}
-    for cell in lowering.graph.formulas:
-        formula = lowering.graph.workbook.content(cell).formula
-        if cell not in found and lowering.value(cell) is None:
-            found[cell] = "cannot be computed from the results"
-        elif formula is not None and formula.dynamic and formula.array is not None and cell not in found:
-            size = size_of(lowering.dag, lowering.array(cell)) or (1, 1)
-            if size != (formula.array.rows, formula.array.columns):
-                found[cell] = "spills into another area than when Excel saved it"
-    return found
-
-
-def _formulas(workbook: Workbook) -> Iterator[Cell]:
-    for sheet in workbook.sheets.values():
-        for (row, column), content in sheet.cells.items():
-            if content.formula is not None:
-                yield Cell(sheet.name, row, column)
 
 
 def _value(lowering: Lowering, cell: Cell) -> CellValue:

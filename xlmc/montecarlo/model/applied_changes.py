@@ -346,7 +346,7 @@ def _refuse_contradiction(filter_: Filter, change: Limits) -> None:
     found = contradiction({key: None if isinstance(limit, Cell) else limit for key, limit in limits.items()})
     if found is not None:
         where = change.where or filter_.row
-        raise DefinitionError(f"{filter_.name!r}: {found[1]}", where=where, hint="correct one of them")
+        raise DefinitionError(f"{filter_.name}: {found[1]}", where=where, hint="correct one of them")
 
 
 def _other(assumption: Assumption, change: Change, lowering: Lowering) -> Assumption:
@@ -418,11 +418,9 @@ def _check(assumption: Assumption, change: Change) -> None:
     cut = assumption.family.data is not None and not assumption.family.data.truncates
     if cut and assumption.cutoffs:
         hint = "give it other data, or leave it out"
-        raise DefinitionError(
-            f"{assumption.name!r}: {assumption.family.name} cannot be cut off", where=where, hint=hint
-        )
+        raise DefinitionError(f"{assumption.name}: {assumption.family.name} cannot be cut off", where=where, hint=hint)
     if assumption.cells:
         return  # the model computes them, and checks what they give
     draw = Draw.of(assumption.name, assumption.family, assumption.given)
     if (fault := draw.fault()) is not None:
-        raise DefinitionError(f"{assumption.name!r}: {fault.message}", where=where, hint=fault.hint)
+        raise DefinitionError(f"{assumption.name}: {fault.message}", where=where, hint=fault.hint)

@@ -65,10 +65,10 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
     given = {**assumption.given, **computed}
     draw = Draw.of(assumption.name, family, given)
     if family.given_by and draw.varying:  # the member is searched for once
-        message = f"{assumption.name!r}: a distribution given by {family.given_by} cannot depend on another assumption"
+        message = f"{assumption.name}: a distribution given by {family.given_by} cannot depend on another assumption"
         raise VaryingError(message, where=draw.varying[0], hint="give it by its parameters, or by numbers")
     if draw != assumption.checked and (fault := draw.fault()) is not None:
-        raise DefinitionError(f"{assumption.name!r}: {fault.message}", where=assumption.row, hint=fault.hint)
+        raise DefinitionError(f"{assumption.name}: {fault.message}", where=assumption.row, hint=fault.hint)
     return draw
 
 

@@ -100,12 +100,12 @@ class _Joining:
             units = " and ".join(repr(each.units) if each.units else "no unit" for each in (assumption, answer))
             message = f"the assumption {assumption.name!r} and {answer.name!r} of {feed.file} have the units {units}"
             raise SimulationError(message, where=assumption.cell, hint="give both the same Units, or such as mph, km/h")
-        cell = _moved(answer.cell, feed.file)
+        cell = _in_book(answer.cell, feed.file)
         tree: ir.Expression = cell if factor == 1.0 else ir.Binary("*", cell, ir.Number(factor))
         text = str(cell) if factor == 1.0 else f"{cell}*{factor!r}"
         self._fed[book, name_key(assumption.name)] = (feed, assumption, tree, text)
         said = f"{assumption.name!r} takes {answer.name!r} of {feed.file} in each trial"
-        self._notices.append(Notice(said, _moved(assumption.cell, book)))
+        self._notices.append(Notice(said, _in_book(assumption.cell, book)))
 
     def _book(self, name: str) -> str:
         """Return the key of a workbook that was named by its file name, or not at all.
@@ -135,9 +135,9 @@ class _Joining:
                 parts.append(self._of_source(source, name, names))
         rewritten = dict(own.rewritten)
         for name, source in self._books.items():
-            rewritten |= {_moved(c, name): _moved_tree(t, name) for c, t in source.trees.items()} if name else {}
+            rewritten |= {_in_book(c, name): _tree_in_book(t, name) for c, t in source.trees.items()} if name else {}
         rewritten.update(self._shared)
-        rewritten |= {_moved(a.cell, book): tree for (book, _), (_, a, tree, _) in self._fed.items()}
+        rewritten |= {_in_book(a.cell, book): tree for (book, _), (_, a, tree, _) in self._fed.items()}
         return replace(
             own,
             assumptions=_all(each.assumptions for each in parts),
@@ -162,11 +162,11 @@ class _Joining:
         for row in definitions.correlations:
             if {row.first, row.second} & fed and row.value:
                 both = f"{row.first!r} and {row.second!r} are correlated, and one of them is fed"
-                raise SimulationError(both, where=_moved(row.row, book), hint="leave the row out, or set it to 0")
+                raise SimulationError(both, where=_in_book(row.row, book), hint="leave the row out, or set it to 0")
         for copula in definitions.copulas:
             if fed & {*copula.names}:
                 message = f"{', '.join(copula.names)} are drawn together, and one of them is fed"
-                raise SimulationError(message, where=_moved(copula.row, book), hint="leave the copula out")
+                raise SimulationError(message, where=_in_book(copula.row, book), hint="leave the copula out")
         rows = tuple(row for row in definitions.correlations if not {row.first, row.second} & fed)
         left = tuple(a for a in definitions.assumptions if a.name not in fed)
         return replace(definitions, assumptions=left, correlations=rows)
@@ -176,7 +176,7 @@ class _Joining:
         found = self._left(source.definitions, book)
         own: list[Assumption] = []
         for each in found.assumptions:
-            here = _moved_all(each, book)
+            here = _definition_in_book(each, book)
             other = self._drawn.get(name_key(each.name))
             if other is None:
                 self._drawn[name_key(each.name)] = (book, each)
@@ -197,12 +197,12 @@ class _Joining:
         return replace(
             found,
             assumptions=tuple(own),
-            filters=tuple(_renamed(_moved_all(each, book), renamed) for each in filters),
-            checks=tuple(_renamed(_moved_all(each, book), renamed) for each in found.checks),
-            evidence=tuple(_renamed(_moved_all(each, book), renamed) for each in found.evidence),
+            filters=tuple(_renamed(_definition_in_book(each, book), renamed) for each in filters),
+            checks=tuple(_renamed(_definition_in_book(each, book), renamed) for each in found.checks),
+            evidence=tuple(_renamed(_definition_in_book(each, book), renamed) for each in found.evidence),
             correlations=tuple(self._ties(found, book, spelt)),
             copulas=tuple(
-                replace(_moved_all(each, book), names=tuple(spelt[name_key(name)] for name in each.names))
+                replace(_definition_in_book(each, book), names=tuple(spelt[name_key(name)] for name in each.names))
                 for each in found.copulas
             ),
             notices=tuple(_of_book(each, book) for each in found.notices),
@@ -217,7 +217,7 @@ class _Joining:
         """
         for row in found.correlations:
             first, second = (spelt[name_key(name)] for name in (row.first, row.second))
-            here = replace(_moved_all(row, book), first=first, second=second)
+            here = replace(_definition_in_book(row, book), first=first, second=second)
             other = self._tied.setdefault(frozenset((first, second)), here)
             if other is here:
                 yield here
@@ -235,10 +235,10 @@ class _Joining:
         whose, first = other
         if not _alike(first, there):
             of = whose or self._model.path.name
-            message = f"the assumption {there.name!r} is defined otherwise in {of}, {_moved(first.row, whose)}"
+            message = f"the assumption {there.name!r} is defined otherwise in {of}, {_in_book(first.row, whose)}"
             hint = "inputs of one name are one input: give both the same distribution and units, or other names"
             raise DefinitionError(message, where=here.row, hint=hint)
-        self._shared[here.cell] = _moved(first.cell, whose)
+        self._shared[here.cell] = _in_book(first.cell, whose)
         said = f"{there.name!r} is the same input in {whose or self._model.path.name} and {book}, and is drawn once"
         self._notices.append(Notice(said, here.cell))
 
@@ -248,13 +248,15 @@ class _Joining:
         for (book, _), (_, assumption, _, _) in self._fed.items():
             name = assumption.name if name_key(assumption.name) not in taken else f"{assumption.name} (fed)"
             taken.add(name_key(name))
-            yield Forecast(name, _moved(assumption.cell, book), _moved(assumption.row, book), units=assumption.units)
+            yield Forecast(
+                name, _in_book(assumption.cell, book), _in_book(assumption.row, book), units=assumption.units
+            )
 
     def workbook(self) -> Workbook:
         """Return the workbook that is run, with formulas in the fed cells, and the others as those that it links to."""
         own = self._model.workbook
         formulas = {
-            _moved(a.cell, book): _formula(text, a.cell) for (book, _), (_, a, _, text) in self._fed.items()
+            _in_book(a.cell, book): _formula(text, a.cell) for (book, _), (_, a, _, text) in self._fed.items()
         } | {cell: _formula(str(other), cell) for cell, other in self._shared.items()}
         links = dict(own.links)
         for name, source in self._books.items():
@@ -301,11 +303,11 @@ def _refuse_parts(source: CompiledModel, name: str) -> None:
         if many or (formula is None and not solved) or called:
             what = f"calls {called[0]}" if called else "fills several cells"
             message = f"the formula {what}, which a workbook that feeds another cannot do"
-            raise SimulationError(message, where=_moved(cell, name), hint="write it with plain references")
+            raise SimulationError(message, where=_in_book(cell, name), hint="write it with plain references")
     if source.needed.graph.circles:
         cell = next(iter(source.needed.graph.circles))
         message = "cells of a workbook that feeds another need each other in a circle"
-        raise SimulationError(message, where=_moved(cell, name), hint="break the circle")
+        raise SimulationError(message, where=_in_book(cell, name), hint="break the circle")
 
 
 def _parts(tree: ir.Expression) -> list[ir.Expression]:
@@ -369,42 +371,42 @@ def _renamed(row: _T, names: Mapping[str, str]) -> _T:
 def _of_book(notice: Notice, book: str) -> Notice:
     where = notice.where
     return replace(
-        notice, where=_moved(where, book) if isinstance(where, Cell) else f"{book}: {where}" if where else book
+        notice, where=_in_book(where, book) if isinstance(where, Cell) else f"{book}: {where}" if where else book
     )
 
 
-def _moved(cell: Cell, book: str) -> Cell:
+def _in_book(cell: Cell, book: str) -> Cell:
     """Return the cell on its sheet's name in the joined workbook: `[momentum.xlsx]Model`; itself for no book."""
     return type(cell)(f"[{book}]{cell.sheet}", cell.row, cell.column) if book else cell
 
 
-def _moved_tree(tree: ir.Expression | FormulaError, book: str) -> ir.Expression | FormulaError:
+def _tree_in_book(tree: ir.Expression | FormulaError, book: str) -> ir.Expression | FormulaError:
     if isinstance(tree, FormulaError):
         return tree
 
-    def move(part: ir.Expression) -> ir.Expression | None:
+    def in_book(part: ir.Expression) -> ir.Expression | None:
         if isinstance(part, Cell):
-            return _moved(part, book)
+            return _in_book(part, book)
         return replace(part, sheet=f"[{book}]{part.sheet}") if isinstance(part, Area) else None
 
-    return substitute(tree, move)
+    return substitute(tree, in_book)
 
 
-def _moved_all(value: _T, book: str) -> _T:
+def _definition_in_book(value: _T, book: str) -> _T:
     """Return a definition with all its cells in the joined workbook."""
     found: Any = value
     moved: Any = value
     if isinstance(found, Cell):
-        moved = _moved(found, book)
+        moved = _in_book(found, book)
     elif isinstance(found, Area):
         moved = replace(found, sheet=f"[{book}]{found.sheet}")
     elif isinstance(found, tuple):
-        moved = tuple(_moved_all(each, book) for each in found)
+        moved = tuple(_definition_in_book(each, book) for each in found)
     elif isinstance(found, Mapping):
-        moved = {key: _moved_all(each, book) for key, each in found.items()}
+        moved = {key: _definition_in_book(each, book) for key, each in found.items()}
     elif is_dataclass(found) and not isinstance(found, type):
         names = [each.name for each in fields(found) if each.name not in _KEPT_AS_THEY_ARE]
-        moved = replace(found, **{name: _moved_all(getattr(found, name), book) for name in names})
+        moved = replace(found, **{name: _definition_in_book(getattr(found, name), book) for name in names})
     result: _T = moved
     return result
 

@@ -25,18 +25,26 @@ def keyword(name: str) -> str:
     return _NO_LETTER.sub("_", name.casefold()).strip("_")
 
 
-def assumption_named(model: CompiledModel, name: str) -> str:
+def assumption_named(model: CompiledModel, name: str, *, drawn: bool = False) -> str:
     """Return the name of an assumption as defined, from that name whatever its case, or from its keyword.
+
+    Args:
+        model: with the assumption.
+        name: or keyword.
+        drawn: look among those alone that are drawn.
 
     Raises:
         SimulationError: there is none, or several have this keyword.
     """
-    names = [a.name for a in model.assumptions]
+    names = [a.name for a in (model.live if drawn else model.assumptions)]
     found = [each for each in names if name_key(each) == name_key(name)]
     found = found or [each for each in names if keyword(each) == keyword(name)]
     if len(found) == 1:
         return found[0]
     if found:
         message = f"{name!r} may be {' or '.join(map(repr, found))}"
-        raise SimulationError(message, hint="Give a dict with the name itself: with_({name: …})")
+        raise SimulationError(message, hint="Give the name as it is spelt there; to with_ in a dict: {name: …}")
+    if drawn:
+        message, listed = f"no assumption that is drawn is called {name!r}", ", ".join(map(repr, names))
+        raise SimulationError(message, hint=f"They are {listed or 'none'}")
     raise SimulationError(f"there is no assumption {name!r}", hint=did_you_mean(name, names))

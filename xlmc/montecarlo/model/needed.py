@@ -9,6 +9,7 @@ from typing import Final
 from xlmc.errors import DefinitionError, Notice
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import Graph, Resolver, build_graph, ir
+from xlmc.excel.formula.graph import reached
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Check, Definitions, Filter, Forecast
 from xlmc.montecarlo.definitions.evidence import Bell
@@ -246,15 +247,7 @@ def _bound(bound: float | Cell) -> ir.Expression:
 
 def upstream(graph: Graph, cells: Iterable[Cell], led_to: Mapping[Cell, Iterable[Cell]]) -> set[Cell]:
     """Return the cells and all that they depend on; assumptions among them, but not what these depend on."""
-    found: set[Cell] = set()
-    open_ = list(cells)
-    while open_:
-        cell = open_.pop()
-        if cell not in found:
-            found.add(cell)
-            open_ += graph.needs.get(cell, ())
-            open_ += led_to.get(cell, ())
-    return found
+    return {*reached(cells, lambda cell: (*graph.needs.get(cell, ()), *led_to.get(cell, ())))}
 
 
 def _circle_error(among: list[Assumption], waiting: dict[Cell, set[Cell]]) -> DefinitionError:

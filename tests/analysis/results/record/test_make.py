@@ -139,8 +139,8 @@ def test_correlations_warnings_and_notices(run, record):
     }
     assert [row["message"] for row in record.rows("warnings")] == run.warnings != []
     assert [row["message"] for row in record.rows("notices")] == [
-        "book.xlsx: calculation is manual",
-        "S!A3: no forecast or filter needs the assumption 'idle'",
+        "book.xlsx: Calculation is manual",
+        "S!A3: No forecast or filter needs the assumption 'idle'",
         *(str(notice) for notice in run.notices_of_run),
     ]
     assert "'inverse' depend on a single trial" in str(run.notices_of_run[0])  # its denominator passes 0

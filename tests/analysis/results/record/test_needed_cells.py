@@ -169,7 +169,7 @@ def test_packed_cells_come_through_a_worksheet(run, monkeypatch):
 def test_packed_cells_that_were_edited_are_refused(changes):
     section = cell_section(many(20), rows=0)
     entries = tuple(Entry(e.key, e.label, changes.get(e.key, e.value)) for e in section.entries)
-    with pytest.raises(WorkbookError, match="the cells in the record"):
+    with pytest.raises(WorkbookError, match="The cells in the record"):
         recorded_cells(Record((Section("cells", "", entries),)))
 
 

@@ -93,5 +93,5 @@ def test_an_infinite_number_in_a_column_is_refused(kind, tiny_run, tmp_path):
     with zipfile.ZipFile(target, "w") as made:
         for name, content in (entries | {column["entry"]: file.getvalue(), RUN: json.dumps(document)}).items():
             made.writestr(name, content)
-    with pytest.raises(XlmcError, match=r"the saved run is damaged: the (draws|forecast)"):
+    with pytest.raises(XlmcError, match=r"The saved run is damaged: the (draws|forecast)"):
         open_run(target)

@@ -155,7 +155,7 @@ def test_a_run_whose_workbook_is_no_file_is_refused(book, tmp_path):
 
 @pytest.mark.parametrize(
     ("name", "message"),
-    [("run.xlsx", "a saved run must end in .xlmcrun.*'run.xlmcrun'"), ("no/run.xlmcrun", "there is no folder")],
+    [("run.xlsx", "A saved run must end in .xlmcrun.*'run.xlmcrun'"), ("no/run.xlmcrun", "There is no folder")],
 )
 def test_where_it_cannot_be_written(run, tmp_path, name, message):
     with pytest.raises(WorkbookError, match=message):
@@ -370,7 +370,7 @@ def test_packed_entries_are_refused(saved, tmp_path):
 
 @pytest.mark.parametrize(
     ("data", "message"),
-    [(b"", "damaged"), (b"PK\x03\x04", "damaged"), (b"no zip", "damaged"), (None, "there is no such file")],
+    [(b"", "damaged"), (b"PK\x03\x04", "damaged"), (b"no zip", "damaged"), (None, "There is no such file")],
 )
 def test_what_is_no_file_of_ours(tmp_path, data, message):
     path = tmp_path / "bad.xlmcrun"

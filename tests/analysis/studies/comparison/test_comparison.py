@@ -171,11 +171,11 @@ def test_forecasts_are_paired_by_name_and_by_hand(linear):
 
 
 def test_pairs_that_are_not_there(linear):
-    with pytest.raises(SimulationError, match=r"x\.xlsx: there is no forecast 'Q'"):
+    with pytest.raises(SimulationError, match=r"x\.xlsx: There is no forecast 'Q'"):
         compare(linear(), linear(name="y.xlsx"), pairs={"Q": "y"})
     second = linear(name="y.xlsx")
     renamed = replace(second.definitions, forecasts=(replace(second.forecasts[0], name="q"),))
-    with pytest.raises(SimulationError, match="no forecast has the same name in both books"):
+    with pytest.raises(SimulationError, match="No forecast has the same name in both books"):
         compare(linear(), CompiledModel(second.workbook, renamed, second.path))
 
 

@@ -43,8 +43,8 @@ def test_time_and_distance_need_no_model_of_the_impact_where_every_speed_gives_o
 @pytest.mark.parametrize(
     ("feeds", "units", "message"),
     [
-        ({"x": "y"}, "mph", "there is no assumption 'x'"),
-        ({"a": "x"}, "mph", "there is no forecast 'x'"),
+        ({"x": "y"}, "mph", "There is no assumption 'x'"),
+        ({"a": "x"}, "mph", "There is no forecast 'x'"),
         ({"a": "y"}, "deg", "have the units 'mph' and 'deg'"),
     ],
 )

@@ -48,7 +48,7 @@ def test_tolerances_as_typed(texts, speed, angle):
         (["Chevy delta-V="], "cannot be read"),
         (["Ford=1"], "no forecast 'Ford'"),
         (["PDOF=1", "pdof=2"], "two tolerances"),
-        (["1 kg"], "no forecast has the unit"),
+        (["1 kg"], "No forecast has the unit"),
         (["1 mph", "2 km/h"], "hold for the same forecasts"),
         (["1", "2"], "hold for the same forecasts"),
     ],
@@ -59,7 +59,7 @@ def test_what_cannot_be_a_tolerance(texts, message):
 
 
 def test_a_tolerance_in_another_kind_of_unit():
-    with pytest.raises(SimulationError, match=r"S!A1: the tolerance 'Chevy delta-V=3 deg' is in deg"):
+    with pytest.raises(SimulationError, match=r"S!A1: The tolerance 'Chevy delta-V=3 deg' is in deg"):
         read_tolerances(["Chevy delta-V=3 deg"], BOTH).of(SPEED, 1.0)
 
 

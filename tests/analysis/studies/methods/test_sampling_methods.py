@@ -134,7 +134,7 @@ def test_the_surrogate_stops_above_a_ratio(case_study):
 
 def test_a_workbook_that_is_no_polynomial_anywhere(book):
     model = book({"A1": 0.3, "B1": "=SIN(50*A1)"}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"f": "B1"})
-    with pytest.raises(SimulationError, match="no cell on the way to the answers is a quadratic"):
+    with pytest.raises(SimulationError, match="No cell on the way to the answers is a quadratic"):
         Surrogate().run(model, 2_048, 1)
 
 

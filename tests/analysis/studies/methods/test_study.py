@@ -221,7 +221,7 @@ def test_accuracy_in_units(straight):
         ({"replicates": 1}, "1 replicates were asked for"),
         ({"trials": 100}, "100 trials were asked for"),
         ({"reference_trials": 10}, "10 reference trials were asked for"),
-        ({"seed": -1}, "the seed -1 is negative"),
+        ({"seed": -1}, "The seed -1 is negative"),
     ],
 )
 def test_what_cannot_be_meant(straight, asked, message):

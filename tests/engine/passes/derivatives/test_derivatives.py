@@ -212,9 +212,9 @@ def test_what_cannot_be_asked(book):
     model = book(BASE | {"Z1": "=A1+B1", "Y1": "=A1"}, XY, {"f": "Z1"})
     with pytest.raises(SimulationError, match="order 3"):
         derivatives(model, {"x": 1.0, "y": 1.0}, order=3)
-    with pytest.raises(SimulationError, match="no values for the assumption 'y'"):
+    with pytest.raises(SimulationError, match="No values for the assumption 'y'"):
         derivatives(model, {"x": 1.0})
-    with pytest.raises(SimulationError, match="no forecast or filter needs S!Y1"):
+    with pytest.raises(SimulationError, match="No forecast or filter needs S!Y1"):
         derivatives(model, {"x": 1.0, "y": 1.0}, cells=[Cell("S", 1, 25)])
 
 

@@ -94,5 +94,5 @@ def test_workbooks_that_count_from_1904(name, arguments, expected):
 
 
 def test_a_format_of_another_language_is_refused():
-    with pytest.raises(FormulaError, match=r"in the number format '\[\$-407\]mmmm' the names of months"):
+    with pytest.raises(FormulaError, match=r"In the number format '\[\$-407\]mmmm' the names of months"):
         function_named("TEXT")([constant(1.0), constant("[$-407]mmmm")])

@@ -84,7 +84,7 @@ def nested(depth):
 
 
 REFUSED = {
-    "encrypted": (plain_book({"S": b""}, before=record(0x2F, bytes(6))), "the workbook is encrypted"),
+    "encrypted": (plain_book({"S": b""}, before=record(0x2F, bytes(6))), "The workbook is encrypted"),
     "Excel 95": (
         plain_book({"S": b""}).replace(struct.pack("<HHH", 0x809, 16, 0x600), struct.pack("<HHH", 0x809, 16, 0x500)),
         "Excel 95",
@@ -192,7 +192,7 @@ DIFFERENT = {
         record(0x221, struct.pack("<HHBBHI", 0, 0xFFFF, 0, 0xFF, 0, 0)),
         {},
         ("S",),
-        "the array formulas of the sheet 'S' fill too many cells",
+        "The array formulas of the sheet 'S' fill too many cells",
     ),
     "no sheet": (b"", {}, ("T",), "lost the sheet 'S'"),
 }

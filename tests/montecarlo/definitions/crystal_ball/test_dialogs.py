@@ -284,7 +284,7 @@ PRECISIONS = {
     ),
     "of all forecasts": ([precision(**SHARE), precision(**SHARE)], None, (0.01, True, ("mean",), ()), "goes on until"),
     "of two kinds": ([precision(**SHARE), precision()], None, NONE, "the forecasts ask for several"),
-    "both widths": ([precision(fRelative=True)], None, NONE, "neither of an absolute and a relative width, or both"),
+    "both widths": ([precision(fRelative=True)], None, NONE, "neither an absolute nor a relative width, or both"),
     "no number": ([precision(fUseMean=False)], None, NONE, "no number was named"),
     "no width": ([precision(fAbsoluteUnits=0.0)], None, NONE, "is not a precision"),
     "beside settings": ([precision()], "Seed", NONE, "xlmc_settings says how to run"),

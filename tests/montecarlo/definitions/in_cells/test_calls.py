@@ -357,7 +357,7 @@ def test_one_name_for_two(workbook):
     cells = {"A1": '=RiskNormal(1,1,RiskName("x"))', "A2": '=RiskNormal(2,1,RiskName("X"))', "A3": "=RiskOutput()+A1"}
     found = read_definitions(workbook(cells), ENGINES)
     assert [a.name for a in found.assumptions] == ["x", "X (S!A2#1)"]
-    assert "another assumption is called 'X'" in found.notices[0].message
+    assert "Another assumption is called 'X'" in found.notices[0].message
 
 
 @pytest.mark.parametrize(

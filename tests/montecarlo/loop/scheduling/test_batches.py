@@ -180,7 +180,7 @@ def test_a_thread_that_cannot_be_started_is_told(monkeypatch):
         start(thread)
 
     monkeypatch.setattr(threading.Thread, "start", failing)
-    with pytest.raises(SimulationError, match="no thread can be started") as caught:
+    with pytest.raises(SimulationError, match="No thread can be started") as caught:
         list(by_threads([Numbers() for _ in range(4)], 1000, numbered()))
     assert "-j" in caught.value.hint
     assert {*threading.enumerate()} <= before

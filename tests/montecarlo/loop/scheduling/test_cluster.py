@@ -138,7 +138,7 @@ def test_a_worker_that_joins_later_is_asked_too(model, monkeypatch):
 def test_no_scheduler(model, monkeypatch):
     monkeypatch.setattr(scheduling, "PATIENCE", 0.05)
     for scheme in ("tcp", "tls", "http"):
-        with pytest.raises(SimulationError, match=rf"{scheme}://127\.0\.0\.1:9: no scheduler answers") as caught:
+        with pytest.raises(SimulationError, match=rf"{scheme}://127\.0\.0\.1:9: No scheduler answers") as caught:
             simulated(model, 1000, scheduler=f"{scheme}://127.0.0.1:9")
         assert "dask scheduler" in caught.value.hint
     clients = [thing for thing in gc.get_objects() if type(thing).__name__ == "Closing"]
@@ -147,7 +147,7 @@ def test_no_scheduler(model, monkeypatch):
 
 def test_no_workers(model, monkeypatch):
     monkeypatch.setattr(scheduling, "PATIENCE", 0.1)
-    with in_one_process(0) as found, pytest.raises(SimulationError, match="the scheduler has no workers") as caught:
+    with in_one_process(0) as found, pytest.raises(SimulationError, match="The scheduler has no workers") as caught:
         simulated(model, 1000, scheduler=found.scheduler_address)
     assert f"dask worker {found.scheduler_address}" in caught.value.hint
 

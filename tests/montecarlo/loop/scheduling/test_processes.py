@@ -201,7 +201,7 @@ def test_a_process_that_dies_is_told(model, children):
 
 def test_a_process_that_cannot_be_started_is_told(model, monkeypatch):
     monkeypatch.setattr(sys, "executable", "/there/is/no/python")
-    with pytest.raises(SimulationError, match="no process can be started: No such file") as caught:
+    with pytest.raises(SimulationError, match="No process can be started: No such file") as caught:
         simulated(model, 1000, jobs=2, scheduler="processes")
     assert "--scheduler threads" in caught.value.hint
 

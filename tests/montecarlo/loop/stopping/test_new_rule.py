@@ -139,7 +139,7 @@ def test_it_may_not_be_reached(model):
         ({"until_rejected": 1.5}, "1.5 rejected trials were asked for"),
         ({"until_rejected": 5, "precision": "1%"}, "a precision and rejected trials were both asked for"),
         ({"until_rejected": 5, "forecasts": "area"}, "forecasts to look at are named, but not what for"),
-        ({"until_rejected": 5, "sampling": "lhs"}, "a run with lhs sampling cannot end before"),
+        ({"until_rejected": 5, "sampling": "lhs"}, "A run with lhs sampling cannot end before"),
     ],
 )
 def test_what_cannot_be_meant(model, asked, message):

@@ -273,10 +273,10 @@ def test_without_being_asked_to_keep_it_an_interruption_is_one(model):
 @pytest.mark.parametrize("asked", [{"until_accepted": 10}, {"precision": 1}, {"adaptive": 1}, {"time_limit": 5}])
 def test_other_sampling_runs_its_trials(model, asked):
     with_settings(model, sampling="lhs")
-    with pytest.raises(SimulationError, match="a run with lhs sampling cannot end before all its trials are run"):
+    with pytest.raises(SimulationError, match="A run with lhs sampling cannot end before all its trials are run"):
         simulated(model, **asked)
 
 
 def test_a_forecast_that_is_not_there(model):
-    with pytest.raises(SimulationError, match="there is no forecast 'z'"):
+    with pytest.raises(SimulationError, match="There is no forecast 'z'"):
         simulated(model, precision=1, forecasts="z")

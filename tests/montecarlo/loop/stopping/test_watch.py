@@ -152,7 +152,7 @@ def test_none_where_the_run_is_to_run_its_trials():
 
 
 def test_an_unknown_forecast():
-    with pytest.raises(SimulationError, match="there is no forecast 'Delta V'") as caught:
+    with pytest.raises(SimulationError, match="There is no forecast 'Delta V'") as caught:
         chosen_rule(stopping(precision=1, forecasts="Delta V"), FORECASTS)
     assert caught.value.hint == "choose from 'Delta-V', 'Speed'"
 
@@ -167,7 +167,7 @@ def test_trials_that_belong_together_are_not_parted(asked):
     for sampling in ("lhs", "sobol"):
         assert not may_end_early(sampling)
         refuse_other_sampling(sampling, NO_GOAL)
-        with pytest.raises(SimulationError, match=f"a run with {sampling} sampling cannot end before"):
+        with pytest.raises(SimulationError, match=f"A run with {sampling} sampling cannot end before"):
             refuse_other_sampling(sampling, stopping(**asked))
     refuse_other_sampling("mc", stopping(**asked))
 

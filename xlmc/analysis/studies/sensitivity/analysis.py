@@ -15,12 +15,10 @@ from xlmc.analysis.studies.sensitivity.measures import FilterLimit, ForecastSens
 from xlmc.analysis.studies.sensitivity.moved_limit import moved_limit
 from xlmc.analysis.studies.sensitivity.one_at_a_time import one_at_a_time
 from xlmc.analysis.studies.sensitivity.pick_and_freeze import SobolRun, pick_and_freeze, why_not
-from xlmc.errors import SimulationError
-from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.model.keywords import assumption_named
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Forecast
-    from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["sensitivities"]
@@ -58,21 +56,10 @@ def sensitivities(
     model, known = simulation.model, _FOUND.setdefault(simulation, {})
     found = [i for i, each in enumerate(model.forecasts) if names is None or each.name in names]
     wanted = tuple(i for i in found if i not in model.categories)  # texts have no variance to explain
-    asked = frozenset(_live_name(model, name) for name in assumptions)
+    asked = frozenset(assumption_named(model, name, drawn=True) for name in assumptions)
     if (wanted, asked) not in known:
         known[wanted, asked] = _analyse(simulation, wanted, asked, progress)
     return known[wanted, asked]
-
-
-def _live_name(model: CompiledModel, name: str) -> str:
-    """Return the name as defined, of a name as it is typed."""
-    for assumption in model.live:
-        if name_key(assumption.name) == name_key(name):
-            return assumption.name
-    raise SimulationError(
-        f"No assumption that is drawn is called {name!r}",
-        hint=f"They are {', '.join(repr(a.name) for a in model.live) or 'none'}",
-    )
 
 
 def _analyse(

@@ -29,6 +29,7 @@ from xlmc.engine.passes.random_rounding import (
     term_sizes,
 )
 from xlmc.excel.address import Cell
+from xlmc.excel.formula.graph import reached
 from xlmc.excel.functions.values import Value
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_condition
@@ -278,14 +279,7 @@ class Case:
     def upstream(self, cell: Cell) -> set[Cell]:
         """Return the cells that a cell needs, itself among them."""
         needs = self.lowering.graph.needs
-        found: set[Cell] = set()
-        open_ = [cell]
-        while open_:
-            node = open_.pop()
-            if node not in found:
-                found.add(node)
-                open_ += needs.get(node, ())
-        return found
+        return {*reached([cell], lambda one: needs.get(one, ()))}
 
     def forecasts_of(self, cells: Iterable[Cell]) -> list[str]:
         """Return the forecasts and filters that a cell reaches."""

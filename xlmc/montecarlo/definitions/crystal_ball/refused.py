@@ -11,6 +11,7 @@ from typing import Final
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Graph, Resolver, build_graph, ir
+from xlmc.excel.formula.graph import reached
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.cell_references import cell_of_reference, formula_at
 from xlmc.montecarlo.definitions.definitions import Assumption, Filter, Forecast
@@ -114,12 +115,4 @@ def _cells(filter_: Filter) -> Iterator[Cell]:
 
 def _upstream(graph: Graph, parameters: Mapping[Cell, Sequence[Cell]], cells: Iterable[Cell]) -> Iterator[Cell]:
     """Return the cells and all that they depend on, what the parameters of assumptions depend on among them."""
-    seen: set[Cell] = set()
-    open_ = list(cells)
-    while open_:
-        cell = open_.pop()
-        if cell not in seen:
-            seen.add(cell)
-            yield cell
-            open_ += parameters.get(cell, ())
-            open_ += graph.needs.get(cell, ())
+    return reached(cells, lambda cell: (*parameters.get(cell, ()), *graph.needs.get(cell, ())))

@@ -80,11 +80,11 @@ def test_python_gives_the_numbers_of_the_command(xlmc, fed, tmp_path):
     ("typed", "message"),
     [
         ("no equals sign", "cannot be read"),
-        ("x=missing.xlsx!y", "there is no such file"),
-        ("x=skid-100-ft.xlsx!y", "skid-100-ft.xlsx: this is the workbook that is run, and it cannot feed itself"),
-        ("x=./skid-100-ft.xlsx!y", "skid-100-ft.xlsx: this is the workbook that is run, and it cannot feed itself"),
+        ("x=missing.xlsx!y", "There is no such file"),
+        ("x=skid-100-ft.xlsx!y", "skid-100-ft.xlsx: This is the workbook that is run, and it cannot feed itself"),
+        ("x=./skid-100-ft.xlsx!y", "skid-100-ft.xlsx: This is the workbook that is run, and it cannot feed itself"),
         (f"{TYPED[1]},{TYPED[3]}", "holds two. Give --feed once for each"),
-        (f"skid-100.xlsx!{TYPED[1]}", "no workbook of this run is called 'skid-100.xlsx', so it cannot be fed. Did"),
+        (f"skid-100.xlsx!{TYPED[1]}", "No workbook of this run is called 'skid-100.xlsx', so it cannot be fed. Did"),
     ],
     ids=["no equals sign", "no file", "itself", "itself by another path", "two in one", "a misspelt first book"],
 )
@@ -134,7 +134,7 @@ def test_python_never_replaces_a_workbook_that_feeds(tmp_path, ending, write):
     path = other if ending == ".xlsx" else tmp_path / f"link{ending}"
     if path != other:
         path.hardlink_to(other)
-    with pytest.raises(WorkbookError, match="this is the file that is read"):
+    with pytest.raises(WorkbookError, match="This is the file that is read"):
         write(run, path)
     assert other.read_bytes() == before
     free = tmp_path / f"free{ending}"
@@ -144,5 +144,5 @@ def test_python_never_replaces_a_workbook_that_feeds(tmp_path, ending, write):
 def test_a_page_never_replaces_the_workbook_of_the_run_beside_it(tmp_path):
     first, second = (library.load(tmp_path / f"{name}.xlsx") for name in ("skid-100-ft", "intersection-momentum"))
     (tmp_path / "page.html").hardlink_to(tmp_path / "intersection-momentum.xlsx")
-    with pytest.raises(WorkbookError, match="this is the file that is read"):
+    with pytest.raises(WorkbookError, match="This is the file that is read"):
         first.simulate(500).save_page(tmp_path / "page.html", beside=second.simulate(500), overwrite=True)

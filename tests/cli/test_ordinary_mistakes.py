@@ -206,37 +206,37 @@ MISTAKES = {
     "a circular reference": (
         {"Model!B2": "=B3*2"},
         "Model!B2",
-        "the cells need each other in a circle: Model!B2 → Model!B3 → Model!B2",
+        "The cells need each other in a circle: Model!B2 → Model!B3 → Model!B2",
         "Break the circle",
     ),
     "a name that is missing": (
         {"Model!B2": "=laod*span/4"},
         "Model!B2",
-        "there is no name 'laod'",
+        "There is no name 'laod'",
         "Did you mean 'load'?",
     ),
     "a sheet that is missing": (
         {"Model!B2": "=Input!B2*span/4"},
         "Model!B2",
-        "there is no sheet 'Input'",
+        "There is no sheet 'Input'",
         "Did you mean 'Inputs'?",
     ),
     "a function that is missing": (
         {"Model!B2": "=SQUARE(load)"},
         "Model!B2",
-        "the function SQUARE is not known to xlmc",
+        "The function SQUARE is not known to xlmc",
         "",
     ),
     "a function of VBA": (
         {"Model!B2": "=BeamMoment(load,span)"},
         "Model!B2",
-        "the function BEAMMOMENT is not known to xlmc",
+        "The function BEAMMOMENT is not known to xlmc",
         "",
     ),
     "a bracket missing": (
         {"Model!B2": "=(load*span/4"},
         "Model!B2",
-        "the formula cannot be read from the marked character on",
+        "The formula cannot be read from the marked character on",
         "Check brackets",
     ),
     "an argument missing": ({"Model!B2": "=POWER(load)"}, "Model!B2", "POWER has 1 argument", "it takes 2"),
@@ -301,7 +301,7 @@ REMARKS = {
     "every row frozen": (
         {f"Inputs!M{row}": True for row in (2, 3, 4, 5)},
         0,
-        "note: Model!B3: nothing varies: no assumption is drawn, as when all are Frozen",
+        "note: Model!B3: Nothing varies: no assumption is drawn, as when all are Frozen",
     ),
 }
 

@@ -212,7 +212,7 @@ def _json(xlmc, book, tmp_path, *options):
 @pytest.mark.parametrize(
     ("arguments", "message"),
     [
-        (("nope",), "there is no scenario 'nope'"),
+        (("nope",), "There is no scenario 'nope'"),
         (("held", "-o", "new.xlsx"), "needs a column Frozen for 'width'"),
         (("narrow", "-o", "new.xlsm"), "workbook must end in .xlsx"),
         (("narrow", "-o", "new.xlsx", "--in-place"), "cannot both be given"),

@@ -305,7 +305,7 @@ def test_a_forecast_without_numbers_judges_nothing(book):
     assert [*found.tolerances] == ["y"]
     assert found.joint.names == ("b",)
     assert cost_of(found, "b").size < 1
-    with pytest.raises(SimulationError, match="no forecast has an answer in two accepted trials"):
+    with pytest.raises(SimulationError, match="No forecast has an answer in two accepted trials"):
         screen(book(cells, given, {"error": "B2"}), **SIZE)
 
 

@@ -124,7 +124,7 @@ def test_outer_draws_without_accepted_trials_are_counted():
     found = xlmc.uncertainty(model, uncertain=["mean"], outer=100, inner=50)
     assert found.empty == 80
     assert found["y"].draws == 20
-    with pytest.raises(SimulationError, match="none of 2,000 trials was accepted"):
+    with pytest.raises(SimulationError, match="None of 2,000 trials was accepted"):
         xlmc.uncertainty(model.with_(mean=xlmc.Uniform(0, 1)), uncertain=["mean"], outer=20, inner=100)
 
 
@@ -155,7 +155,7 @@ def test_correlated_uncertain_assumptions_stay_for_the_inner_trials():
 
 def test_what_cannot_be_asked_is_refused():
     model = sum_of_two()
-    with pytest.raises(DefinitionError, match="no assumption that a forecast or filter needs is Uncertain"):
+    with pytest.raises(DefinitionError, match="No assumption that a forecast or filter needs is Uncertain"):
         xlmc.uncertainty(model)
     for options, message in (
         ({"outer": 19}, "19 outer draws"),
@@ -163,8 +163,8 @@ def test_what_cannot_be_asked_is_refused():
         ({"inner": 1}, "1 inner trials"),
         ({"confidence": 100}, "confidence of 100 %"),
         ({"percents": [0]}, "0 is no percentile"),
-        ({"judged": ["nothing"]}, "no forecast has the name 'nothing'"),
-        ({"uncertain": ["nothing"]}, "no assumption that is drawn has the name 'nothing'"),
+        ({"judged": ["nothing"]}, "No forecast has the name 'nothing'"),
+        ({"uncertain": ["nothing"]}, "No assumption that is drawn has the name 'nothing'"),
     ):
         with pytest.raises(SimulationError, match=message):
             xlmc.uncertainty(model, **{"uncertain": ["mean"], **options})

@@ -155,8 +155,8 @@ def test_correlations_of_the_other_book_hold(books, tmp_path):
         (["end=impact.xlsx!x"], "There is no forecast or assumption 'x'"),
         (["end=impact.xlsx!other"], "have the units 'mph' and 'ft'"),
         (["end=impact.xlsx!impact", "END=impact.xlsx!impact"], "fed twice"),
-        (["impact.xlsx!s=skid.xlsx!start"], "skid.xlsx: this is the workbook that is run, and it cannot feed itself"),
-        (["other.xlsx!s=impact.xlsx!impact"], "no workbook of this run is called 'other.xlsx'"),
+        (["impact.xlsx!s=skid.xlsx!start"], "skid.xlsx: This is the workbook that is run, and it cannot feed itself"),
+        (["other.xlsx!s=impact.xlsx!impact"], "No workbook of this run is called 'other.xlsx'"),
         (["end=impact"], "is not written as one"),
     ],
 )

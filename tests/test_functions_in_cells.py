@@ -445,6 +445,7 @@ def test_a_correlated_frequency(model):
     for formula, message in (
         ("=RiskCompound(RiskPoisson(50),1,RiskCorrmat(F1:G2,1))", "RiskCompound itself cannot be correlated"),
         ("=RiskCompound(3,RiskNormal(1,1,RiskCorrmat(F1:G2,1)))", "The severity of RiskCompound cannot be correlated"),
+        ("=RiskCompound(3,RiskNormal(1,1,RiskCopula(F1:G2,1)))", "The severity of RiskCompound cannot be correlated"),
         ("=RiskCompound(RiskPoisson(5),2*RiskExpon(3))", "The severity of RiskCompound is a formula that draws"),
         ("=RiskCompound(RiskPoisson(5),RiskExpon(3),RiskTruncate(1,2))", "RiskCompound cannot be cut off"),
         ("=RiskCompound(RiskPoisson(5))", "RiskCompound has 1 arguments"),

@@ -81,19 +81,19 @@ def sentence(text: str) -> str:
     return text if text.endswith(("?", "!", ".")) else f"{text}."
 
 
-_COMMANDS = ("xlmc", "pip")
+_AS_TYPED = ("xlmc", "pip", "nan", "inf")
 
 
 def capitalised(text: str) -> str:
     """Return the text with a capital letter, as a sentence begins.
 
-    A command, a quotation, a cell and a name before a colon stay as they are.
+    A command, a number, a quotation, a cell and a name before a colon stay as they are.
 
     >>> capitalised("there is no file"), capitalised("xlmc new lists them"), capitalised("'road friction' is frozen")
     ('There is no file', 'xlmc new lists them', "'road friction' is frozen")
     """
     first = text.split(maxsplit=1)[0] if text.strip() else ""
-    return text if first in _COMMANDS or not re.sub("[-',;]", "", first).isalpha() else f"{text[0].upper()}{text[1:]}"
+    return text if first in _AS_TYPED or not re.sub("[-',;]", "", first).isalpha() else f"{text[0].upper()}{text[1:]}"
 
 
 class XlmcError(Exception):

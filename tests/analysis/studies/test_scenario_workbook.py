@@ -189,7 +189,7 @@ def test_a_file_that_is_there_is_not_replaced(small):
 
 def test_a_scenario_asks_for_the_same_forecasts(case):
     other_name = Scenario("x", (Typed(parse_address("'Results wanted'!A6"), "Other"),))
-    with pytest.raises(DefinitionError, match="In the scenario 'x': other forecasts would be asked for"):
+    with pytest.raises(DefinitionError, match="In the scenario 'x': the change alters which forecasts there are"):
         model_of(case, other_name)
 
 

@@ -388,8 +388,8 @@ NOT_COMPUTED = {
     "CB.GetForeStatFN(A2,2,3)": "CB.GetForeStatFN has 1 arguments too many",
     "RiskMean(A1:A2)": "RiskMean must name the cell of an output first",
     "RiskPercentile(A2)": "RiskPercentile has 1 arguments",
-    "RiskMean([7]Elsewhere!A1)": "Refers to another workbook",
-    "RiskMean(A2)+[7]Elsewhere!A1": "Refers to another workbook",
+    "RiskMean([7]Elsewhere!A1)": "refers to another workbook",
+    "RiskMean(A2)+[7]Elsewhere!A1": "refers to another workbook",
     "RiskMean(NoSuchName)": "there is no name 'NoSuchName'",
 }
 

@@ -254,13 +254,13 @@ def test_a_draw_in_a_cell(tmp_path, subtests):
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ([Range("Nisan weight", 1, 2)], "There is no assumption 'Nisan weight'"),
-        ([Limits("Restitution", {"at_most": 1})], "There is no filter 'Restitution'"),
+        ([Range("Nisan weight", 1, 2)], "there is no assumption 'Nisan weight'"),
+        ([Limits("Restitution", {"at_most": 1})], "there is no filter 'Restitution'"),
         ([Range(FRICTION, 0.8, 0.7)], f"{FRICTION}: Low (0.8) is above High (0.7)"),
         ([Limits(TANGENT, {"at_most": -1})], f"{TANGENT}: At least (0) and At most (-1) contradict each other"),
         ([Frozen(FRICTION, 0.7), Range(FRICTION, 0.6, 0.7)], f"{FRICTION!r} is frozen"),
-        ([Band(FRICTION, 10, 10)], "A band from P10 to P10 holds nothing"),
-        ([Typed(parse_address("Input!D28"), 1.0)], "The workbook has no sheet 'Input'"),
+        ([Band(FRICTION, 10, 10)], "a band from P10 to P10 holds nothing"),
+        ([Typed(parse_address("Input!D28"), 1.0)], "the workbook has no sheet 'Input'"),
         ([Typed(parse_address("'Results wanted'!B41"), 1.0)], "is a cell of the table xlmc_settings"),
         ([Limits(TANGENT, {"at_least": None, "at_most": None})], "has no limit, and its cell is"),
         ([Measured(TANGENT, {"reading": 0.3})], f"{TANGENT!r} is a filter, and has no reading"),

@@ -252,7 +252,7 @@ def test_a_notice_says_what_was_done(book):
         (
             {"C1": '=INDIRECT("A"&1)*0.97'},
             {},
-            "Parameters of assumptions need each other in a circle: 'v' → 'v'",
+            "parameters of assumptions need each other in a circle: 'v' → 'v'",
             "refer to S!A1 in its parameters without OFFSET and INDIRECT, or type them as numbers",
             "S!A1",
         ),

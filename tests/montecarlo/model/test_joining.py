@@ -157,7 +157,7 @@ def test_correlations_of_the_other_book_hold(books, tmp_path):
         (["end=impact.xlsx!impact", "END=impact.xlsx!impact"], "fed twice"),
         (["impact.xlsx!s=skid.xlsx!start"], "skid.xlsx: This is the workbook that is run, and it cannot feed itself"),
         (["other.xlsx!s=impact.xlsx!impact"], "No workbook of this run is called 'other.xlsx'"),
-        (["end=impact"], "is not written as one"),
+        (["end=impact"], "cannot be read"),
     ],
 )
 def test_what_cannot_be_fed_is_refused(books, feeds, message):

@@ -96,7 +96,7 @@ RUNS = {
     "jit": {"engine": "jit", "trials": 35_000},
     "slow reference": {"engine": "formulas", "trials": 40},
     "some draws kept": {"keep_inputs": 5},
-    "nothing accepted": {"trials": 1, "seed": 7},
+    "Nothing accepted": {"trials": 1, "seed": 7},
     "rare": {"until_accepted": 100, "rare": "always"},
 }
 
@@ -166,7 +166,7 @@ def test_a_record_without_the_goal_that_was_not_reached_is_refused(model, asked)
 
 
 def test_nothing_was_accepted_in_the_run_that_should_have_accepted_nothing(run_of):
-    assert run_of("nothing accepted").accepted == 0
+    assert run_of("Nothing accepted").accepted == 0
 
 
 def test_an_interrupted_run_is_repeated(model, tmp_path):
@@ -413,10 +413,10 @@ def test_no_record_and_two(edited):
 
 def test_a_workbook_that_could_never_be_run_is_refused(results, monkeypatch):
     def refuse(*_):
-        raise XlmcError("no")
+        raise XlmcError("No")
 
     monkeypatch.setattr(repeating, "build_model", refuse)
-    with pytest.raises(XlmcError, match="no"):
+    with pytest.raises(XlmcError, match="No"):
         replay(results)
 
 

@@ -168,7 +168,7 @@ def _whole(name: str, given: Any) -> int | None:
     if isinstance(given, Integral) and not isinstance(given, bool):
         return int(given)
     if not isinstance(given, Real) or isinstance(given, bool) or not float(given).is_integer():
-        raise SimulationError(f"{name} is {given!r}", hint=f"Give a whole number for {name}")
+        raise SimulationError(f"`{name}` is {given!r}", hint="Give a whole number")
     return int(float(given))
 
 

@@ -47,7 +47,7 @@ def test_tolerances_as_typed(texts, speed, angle):
         (["1.2.3"], "cannot be read"),
         (["Chevy delta-V="], "cannot be read"),
         (["Ford=1"], "no forecast 'Ford'"),
-        (["PDOF=1", "pdof=2"], "two tolerances"),
+        (["PDOF=1", "pdof=2"], "Two tolerances"),
         (["1 kg"], "No forecast has the unit"),
         (["1 mph", "2 km/h"], "hold for the same forecasts"),
         (["1", "2"], "hold for the same forecasts"),

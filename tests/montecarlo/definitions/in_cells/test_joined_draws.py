@@ -82,6 +82,7 @@ def test_what_is_drawn(model, cells, message, tau):
         ({"L1": "Gumbel", "L2": 0.5}, "S!L1", "Theta (0.5) of Gumbel must be at least 1"),
         ({"L1": "Gaussian"}, "S!L1", "has no matrix with 2 rows"),
         ({"L1": "t"}, "S!L1", "has no degrees of freedom"),
+        ({"L1": None, "K1": "Gaussian", "K2": 1, "L2": None, "L3": 1}, "S!L2", "The cell of a correlation is blank"),
         ({"A2": "=RiskExpon(1,RiskCopula($K$1:$L$3,1))"}, "S!A2", "has a position of the copula"),
         ({"A2": "=RiskExpon(1,RiskCopula($K$1:$L$3,0))"}, "S!A2", "position must be a whole number from 1"),
         ({"A2": "=RiskExpon(1,RiskCopula(K1,2))"}, "S!A2", "first argument is not a range of cells"),

@@ -13,6 +13,7 @@ import click
 
 from xlmc.cli.options import FilePath, functions_option
 from xlmc.cli.terminal import paragraph, plain, put, say, say_json
+from xlmc.errors import capitalised
 
 if TYPE_CHECKING:
     from xlmc.engine.calculation import Calculation
@@ -260,7 +261,7 @@ def _tell(answers: _Answers, book: Path, outputs: Sequence[Path]) -> None:
         if len(listed) > 1:
             said = said.replace("has", "have").replace("keeps", "keep")
         who = "it" if len(listed) == 1 else "they"
-        say(f"note: {shown}{more}: {why}; {who} {said}.", err=True)
+        say(f"note: {shown}{more}: {capitalised(why)}; {who} {said}.", err=True)
 
 
 def _cells(count: int) -> str:

@@ -225,9 +225,9 @@ FAULTS = {
     "no document": (lambda p, d: p.pop(RUN), "is not a saved run"),
     "another workbook": (lambda p, d: p.update({WORKBOOK: b"PK"}), "is not the one that was run"),
     "another column": (lambda p, d: p.update({"columns/1.npy": p["columns/2.npy"]}), "its SHA-256 is another"),
-    "objects": (with_column(1, np.array([{}] * 3, dtype=object)), "not what it says it is"),
-    "fewer numbers than it says": (with_column(1, np.ones(5), count=9), "not what it says it is"),
-    "more numbers than it says": (with_column(1, np.ones(9), count=5), "not what it says it is"),
+    "objects": (with_column(1, np.array([{}] * 3, dtype=object)), "differs from what the file says of it"),
+    "fewer numbers than it says": (with_column(1, np.ones(5), count=9), "differs from what the file says of it"),
+    "more numbers than it says": (with_column(1, np.ones(9), count=5), "differs from what the file says of it"),
     "columns of different lengths": (with_column(1, np.ones(9)), "columns of different lengths"),
     "trials beyond the run": (lambda p, d: with_column(0, np.arange(d["columns"][0]["count"]) + 10**12)(p, d), "trial"),
     "trials twice": (lambda p, d: with_column(0, np.zeros(d["columns"][0]["count"], int))(p, d), "its trial numbers"),
@@ -295,7 +295,7 @@ def test_goals_are_saved_and_opened_as_in_version_0_4(model, tmp_path, asked, wr
         ({"goal": {}}, "its end has the unknown field goal"),
         ({"goal": None}, "its end has the unknown field goal"),
         ({"boredom": 5}, "the unknown field boredom"),
-        ({"forecasts": ["area"]}, "forecasts to look at are named, but not what for"),
+        ({"forecasts": ["area"]}, "orecasts are named, and no precision or stable digits"),
     ],
 )
 def test_a_goal_that_no_run_may_have_is_refused(saved, tmp_path, goal, message):

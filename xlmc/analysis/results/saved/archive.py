@@ -214,4 +214,4 @@ def read_column(entry: IO[bytes], kind: str, count: int, name: str, digest: hash
 
 
 def _other(name: str) -> WorkbookError:
-    return WorkbookError(f"the column {name!r} of the saved run differs from its checksum", hint=AGAIN)
+    return WorkbookError(f"the column {name!r} of the saved run differs from what the file says of it", hint=AGAIN)

@@ -76,7 +76,7 @@ def test_the_copy_has_values_where_openpyxl_showed_none(xlmc, book):
     assert openpyxl.load_workbook("copy.xlsx")["S"]["A2"].value == "=A1*3"
     assert openpyxl.load_workbook("copy.xlsx")["S"]["A2"].font.bold
     assert outcome.code == 1
-    assert "S!A6: the function NOSUCHFUNCTION is not known to xlmc; it has no value" in outcome.err
+    assert "S!A6: The function NOSUCHFUNCTION is not known to xlmc; it has no value" in outcome.err
     assert "S!A7: The formula depends on a cell that could not be computed" in outcome.err
     assert "S!A8: NOW" in outcome.err
     assert excel.load("copy.xlsx").may_be_stale  # Excel is asked for what xlmc cannot compute
@@ -151,7 +151,7 @@ def test_what_cannot_be_computed_keeps_its_value_unless_a_change_reaches_it(xlmc
     outcome = xlmc("calculate", path, "--set", "S!A1=8", "-o", "a.xlsx")
     assert outcome.code == 1
     assert [excel.load("a.xlsx")[f"S!A{row}"] for row in (2, 3, 4)] == [None, None, 14.0]
-    assert "S!A2: the function NOSUCH is not known to xlmc; it has no value" in outcome.err
+    assert "S!A2: The function NOSUCH is not known to xlmc; it has no value" in outcome.err
     assert "S!A3: The formula depends on" in outcome.err
 
 

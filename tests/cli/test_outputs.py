@@ -74,9 +74,9 @@ CHANGES = [
     (change_a_part, "it was changed since xlmc wrote it"),
     (results_of_another_book, "it holds results of 'other.xlsx', not of 'book.xlsx'"),
     (lambda path: path.write_text("my notes", encoding="utf-8"), "xlmc did not write it"),
-    (lambda path: path.chmod(0o444), "the file is read-only"),
-    (become_a_folder, "This is a folder"),
-    (become_a_link_to_nothing, "This is a link to"),
+    (lambda path: path.chmod(0o444), "The file is read-only"),
+    (become_a_folder, "this is a folder"),
+    (become_a_link_to_nothing, "this is a link to"),
     (be_held_open, "Excel holds the workbook open"),
 ]
 
@@ -329,7 +329,7 @@ def test_new_writes_nothing_through_a_link_to_nothing(xlmc, tmp_path):
     (tmp_path / "case.xlsx").symlink_to("elsewhere.xlsx")
     outcome = xlmc("new", "skid", "case.xlsx")
     assert outcome.code == 2
-    assert "This is a link to" in outcome.err
+    assert "this is a link to" in outcome.err
     assert not (tmp_path / "elsewhere.xlsx").exists()
 
 

@@ -216,7 +216,7 @@ def _json(xlmc, book, tmp_path, *options):
         (("held", "-o", "new.xlsx"), "needs a column Frozen for 'width'"),
         (("narrow", "-o", "new.xlsm"), "workbook must end in .xlsx"),
         (("narrow", "-o", "new.xlsx", "--in-place"), "cannot both be given"),
-        (("--in-place",), "which scenario?"),
+        (("--in-place",), "Which scenario?"),
     ],
 )
 def test_what_cannot_be_typed(xlmc, book, tmp_path, monkeypatch, arguments, message):

@@ -158,7 +158,7 @@ def test_mistakes_are_named_with_their_cell(book, row, message, where):
 
 
 def test_the_slow_engine_says_that_it_cannot(book):
-    with pytest.raises(FormulaError, match="the engine `formulas` cannot compute what a row of xlmc_solve gives"):
+    with pytest.raises(FormulaError, match="The engine `formulas` cannot compute what a row of xlmc_solve gives"):
         xlmc.load(book()).simulate(100, engine="formulas")
 
 

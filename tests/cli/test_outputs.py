@@ -75,8 +75,8 @@ CHANGES = [
     (results_of_another_book, "it holds results of 'other.xlsx', not of 'book.xlsx'"),
     (lambda path: path.write_text("my notes", encoding="utf-8"), "xlmc did not write it"),
     (lambda path: path.chmod(0o444), "The file is read-only"),
-    (become_a_folder, "this is a folder"),
-    (become_a_link_to_nothing, "this is a link to"),
+    (become_a_folder, "This is a folder"),
+    (become_a_link_to_nothing, "This is a link to"),
     (be_held_open, "Excel holds the workbook open"),
 ]
 
@@ -237,7 +237,7 @@ def test_an_output_that_becomes_the_book_during_the_run_spares_it(xlmc, book, tm
     outcome = xlmc("simulate", book, "--json", "a.json", "--overwrite")
     assert book.read_bytes() == before
     assert (tmp_path / "a-2.json").stat().st_size > 100
-    assert "a.json: this is the file that is read; it stays as it is" in outcome.err
+    assert "a.json: This is the file that is read; it stays as it is" in outcome.err
 
 
 @pytest.mark.skipif(os.name == "nt", reason="Windows keeps the current folder")
@@ -283,7 +283,7 @@ def test_a_file_that_excel_holds_on_windows_is_spared_and_the_result_stands_besi
     monkeypatch.setattr(os, "replace", held)
     monkeypatch.setattr("time.sleep", naps.append)
     outcome = xlmc("simulate", book, "--seed", 4, "-o", "a.xlsx")
-    assert "a.xlsx: another program holds the file; it stays as it is, and a-2.xlsx was written instead" in outcome.err
+    assert "a.xlsx: Another program holds the file; it stays as it is, and a-2.xlsx was written instead" in outcome.err
     assert (tmp_path / "a.xlsx").read_bytes() == before
     assert zipfile.is_zipfile(tmp_path / "a-2.xlsx")
     assert 2 < sum(nap for nap in naps if nap) < 10
@@ -329,7 +329,7 @@ def test_new_writes_nothing_through_a_link_to_nothing(xlmc, tmp_path):
     (tmp_path / "case.xlsx").symlink_to("elsewhere.xlsx")
     outcome = xlmc("new", "skid", "case.xlsx")
     assert outcome.code == 2
-    assert "this is a link to" in outcome.err
+    assert "This is a link to" in outcome.err
     assert not (tmp_path / "elsewhere.xlsx").exists()
 
 

@@ -403,6 +403,7 @@ class Outputs(NamedTuple):
         return written, lines
 
     def _write_beside(self, path: Path, write: _Write) -> Path:
+        from xlmc.errors import capitalised
         from xlmc.excel.workbook.target import free_target, refuse_read
         from xlmc.excel.workbook.writer import TakenError
 
@@ -414,7 +415,10 @@ class Outputs(NamedTuple):
         except TakenError as taken:
             found, _ = free_target(results_beside(path) if own else path, self.name, after=path)
             write(found)
-            say(f"note: {path}: {taken.message}; it stays as it is, and {found} was written instead.", err=True)
+            say(
+                f"note: {path}: {capitalised(taken.message)}; it stays as it is, and {found} was written instead.",
+                err=True,
+            )
             return found
         return path
 

@@ -88,7 +88,7 @@ def test_a_formula_that_gives_nothing_gives_zero(lower):
 
 
 REFUSED = [
-    ("SQTR(A1)", "The function SQTR is not known to xlmc", "did you mean SQRT?"),
+    ("SQTR(A1)", "the function SQTR is not known to xlmc", "did you mean SQRT?"),
     (
         "MyOwn.Macro(A1)",
         "the function MYOWN.MACRO is not known to xlmc",

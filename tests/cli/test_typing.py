@@ -105,6 +105,7 @@ COMMANDS = [
     "fit",
     "verify",
     "calculate",
+    "seek",
     "simulate",
     "scenario",
     "open",
@@ -112,8 +113,10 @@ COMMANDS = [
     "replay",
     "compare",
     "screen",
+    "decide",
     "methods",
     "stability",
+    "uncertainty",
     "help",
     "completion",
 ]

@@ -1,38 +1,28 @@
 """Numbers as people read them: all outputs write them with these functions, so that no two differ.
 
 A number has the digits that its error supports; without an error six, or all that it needs where it is exact. Thousands
-stand apart. A power of ten is written from 10¹⁵ on and below 10⁻⁴ alone. The signs for thousands and decimals are those
-of the style in use, never those of the machine.
+stand apart. A power of ten is written from 10¹⁵ on and below 10⁻⁴ alone. Thousands and decimals have the signs of
+1,234.5, whatever those of the machine are.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
-from contextlib import contextmanager
-from contextvars import ContextVar
-from typing import Final
 
 __all__ = [
     "MOST_DIGITS",
-    "STYLES",
     "count_text",
     "decimals_of",
     "exact_text",
     "fixed_text",
     "format_estimate",
-    "in_style",
     "is_far",
     "number_text",
-    "signs",
     "two_digit_exponent",
 ]
 
 MOST_DIGITS = 15
 """All that a double holds for certain."""
-
-STYLES: Final = ("1,234.5", "1234.5", "1.234,5", "1 234,5", "1'234.5", "1234,5")
-"""How numbers may be written, by the example 1,234.5; the first is used unless a workbook asks for another."""
 
 _LARGEST, _SMALLEST = 15, -4
 """Powers of ten from which on, and below which, a number is written with a power of ten."""
@@ -41,41 +31,10 @@ _DIGITS = 6
 _EXACT_DIGITS = range(6, 13)  # of a value whose error is 0
 _NOISE = 1e-9  # share of such a value that may come from rounding in formulas
 
-_STYLE: ContextVar[str] = ContextVar("number style", default=STYLES[0])
-
-
-@contextmanager
-def in_style(style: str) -> Iterator[None]:
-    """Write all numbers in a style, one of `STYLES`, until the end of the context.
-
-    >>> with in_style("1.234,5"):
-    ...     number_text(1234567.25), format_estimate(1234.5, 0.32)
-    ('1.234.567', '1.234,50 ± 0,32')
-    """
-    token = _STYLE.set(style)
-    try:
-        yield
-    finally:
-        _STYLE.reset(token)
-
-
-def _styled(text: str) -> str:
-    """Write a number as Python writes it, `1,234.5`, in the style in use."""
-    style = _STYLE.get()
-    if style == STYLES[0]:
-        return text
-    thousands = style[1] if not style[1].isdigit() else ""
-    return text.translate({ord(","): "\u202f" if thousands == " " else thousands, ord("."): style[-2]})
-
-
-def signs() -> tuple[str, str]:
-    """Write the signs of thousands and of decimals in the style in use."""
-    return _styled(","), _styled(".")
-
 
 def count_text(count: int) -> str:
     """Write a count of trials or of anything else, `200,000`."""
-    return _styled(f"{count:,}")
+    return f"{count:,}"
 
 
 def fixed_text(value: float, decimals: int) -> str:
@@ -84,7 +43,7 @@ def fixed_text(value: float, decimals: int) -> str:
     >>> fixed_text(48211.3, -1), fixed_text(-0.001, 2)
     ('48,210', '0.00')
     """
-    return _styled(f"{round(value, decimals) + 0.0:,.{max(decimals, 0)}f}")  # + 0.0: no negative zero
+    return f"{round(value, decimals) + 0.0:,.{max(decimals, 0)}f}"  # + 0.0: no negative zero
 
 
 def is_far(value: float) -> bool:
@@ -99,9 +58,9 @@ def number_text(value: float, digits: int = _DIGITS) -> str:
     ('2,234,568', '0.3', '1e-09', '2.5e+15')
     """
     if value == 0.0 or not math.isfinite(value) or is_far(value):
-        return _styled(f"{value + 0.0:.{digits}g}")
+        return f"{value + 0.0:.{digits}g}"
     text = f"{value:,.{max(digits - 1 - two_digit_exponent(value), 0)}f}"
-    return _styled(text.rstrip("0").rstrip(".") if "." in text else text)
+    return text.rstrip("0").rstrip(".") if "." in text else text
 
 
 def exact_text(value: float) -> str:
@@ -144,7 +103,7 @@ def format_estimate(value: float, error: float | None, decimals: int | None = No
         return f"({scaled})e{size:+03d}"
     decimals = 1 - two_digit_exponent(error) if decimals is None else decimals
     if decimals + size >= MOST_DIGITS:  # an error below the last bit of the value
-        return _styled(f"{value:.{MOST_DIGITS}g} ± {error:.1e}")
+        return f"{value:.{MOST_DIGITS}g} ± {error:.1e}"
     return f"{fixed_text(value, decimals)} ± {fixed_text(error, decimals)}"
 
 

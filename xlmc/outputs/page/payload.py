@@ -25,7 +25,6 @@ from numpy.typing import NDArray
 from xlmc.montecarlo.columns import picked, release
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics.estimate import t_quantile
-from xlmc.montecarlo.statistics.number_text import signs
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.page.fitted_curves import FittedCurve, fitted_curves
 from xlmc.outputs.page.second_run import partner_of
@@ -168,11 +167,10 @@ def _unless_all(usual: int, numbers: NDArray[np.int64]) -> list[int] | None:
 def form_json(form: Form) -> dict[str, Any]:
     """How the script writes numbers of a forecast."""
     before, after = form.affixes
-    thousands, decimal = signs()
     moment = None
     if form.kind is Kind.DATE:
         moment = form.shows
-    signs_of = {"thousands": thousands, "decimal": decimal}
+    signs_of = {"thousands": ",", "decimal": "."}
     return {"factor": form.factor, "before": before, "after": after, "moment": moment, "epoch": form.epoch, **signs_of}
 
 

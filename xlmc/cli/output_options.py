@@ -366,6 +366,7 @@ class Outputs(NamedTuple):
         return [path for path in (self.source, self.beside, *self.fed_by, own) if path is not None]
 
     def _with_free_default(self, like: Path) -> Outputs:
+        from xlmc.errors import capitalised
         from xlmc.excel.workbook.target import Target, free_target, refuse_read
         from xlmc.outputs.sheets.save import check_ending
 
@@ -378,7 +379,7 @@ class Outputs(NamedTuple):
             return self
         found, reason = free_target(self.default, self.name)
         if reason is not None:
-            say(f"note: {self.default}: {reason}; it stays as it is, and results go to {found}.", err=True)
+            say(f"note: {self.default}: {capitalised(reason)}; it stays as it is, and results go to {found}.", err=True)
         return self._replace(default=found)
 
     def write(self, run: RunResult) -> tuple[bool, list[str]]:

@@ -26,12 +26,13 @@ from templates import (  # noqa: E402
 from templates.description import Template  # noqa: E402
 from templates.editions import Edition, edition  # noqa: E402
 from templates.momentum import describe as momentum  # noqa: E402
+from templates.other_fields import beam, mass_calibration, project, tolerance_stack, warranty  # noqa: E402
 from templates.planar_forward import describe as planar_forward  # noqa: E402
 from templates.planar_impact import describe as planar_impact  # noqa: E402
 from templates.two_vehicles.example_scene import EXAMPLE, FORWARD_EXAMPLE, MOMENTUM_EXAMPLE  # noqa: E402
 from templates.writer import write_book  # noqa: E402
 
-__all__ = ["TEMPLATES", "build", "file_name"]
+__all__ = ["TEMPLATES", "build", "editions", "file_name"]
 
 TEMPLATES: dict[str, Template] = {
     "skid": skid.TEMPLATE,
@@ -48,6 +49,11 @@ TEMPLATES: dict[str, Template] = {
     "video-speed": video_speed.TEMPLATE,
     "momentum-energy": momentum_energy.TEMPLATE,
     "pedestrian": pedestrian.TEMPLATE,
+    "beam": beam.TEMPLATE,
+    "tolerance-stack": tolerance_stack.TEMPLATE,
+    "mass-calibration": mass_calibration.TEMPLATE,
+    "project": project.TEMPLATE,
+    "warranty": warranty.TEMPLATE,
 }
 """Name of the template -> what its workbooks say, both editions in one."""
 
@@ -57,13 +63,21 @@ def file_name(name: str, units: Edition) -> str:
     return f"{name}.xlsx" if units is Edition.IMPERIAL else f"{name}-{units.value}.xlsx"
 
 
+def editions(template: Template) -> dict[Edition, Template]:
+    """The editions of a template; only the imperial one where no unit tells them apart."""
+    made = {units: edition(template, units) for units in Edition}
+    if made[Edition.IMPERIAL] == made[Edition.SI]:
+        del made[Edition.SI]
+    return made
+
+
 def build(folder: Path) -> list[Path]:
     """Write every edition of every template into `folder`; the paths written are returned."""
     written = []
     for name, template in TEMPLATES.items():
-        for units in Edition:
+        for units, described in editions(template).items():
             path = folder / file_name(name, units)
-            write_book(edition(template, units), path)
+            write_book(described, path)
             written.append(path)
     return written
 

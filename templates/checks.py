@@ -12,7 +12,7 @@ def check(symbol: str, name: str, formula: str, reference: str, note: str) -> Eq
     return Equation(symbol, "", name, "", formula, reference, note, Role.CHECK, "General")
 
 
-def checks_section(number: int, *rows: Equation) -> Section:
+def checks_section(number: int, *rows: Equation, called: str = "Physics checks") -> Section:
     """The checks under their heading, and the cell that says whether all of them hold."""
     every = check(ALL_CHECKS, "All checks hold", f"AND({','.join(row.symbol for row in rows)})", "", "")
-    return Section(f"{number}  Physics checks, at the base case", (*rows, every))
+    return Section(f"{number}  {called}, at the base case", (*rows, every))

@@ -18,6 +18,7 @@ __all__ = [
     "RULE_OF_TYRES",
     "CorrelationRow",
     "Curve",
+    "DataTable",
     "Diagram",
     "Equation",
     "EvidenceRow",
@@ -50,10 +51,13 @@ PARAMETER_COLUMNS = (
     "Lower cutoff",
     "Upper cutoff",
 )
-"""The parameter columns of `xlmc_assumptions`: enough for Uniform, Normal, Triangular and Trapezoid."""
+"""The parameter columns of `xlmc_assumptions` in most templates: enough for Uniform, Normal, Triangular, Trapezoid."""
 
 Number = float | Both
 """A number; in a description of both editions, one or two."""
+
+Parameter = Number | str
+"""A number; or a formula such as `=eta`, or for the column Data the defined name of a table."""
 
 
 class Role(Enum):
@@ -83,7 +87,7 @@ class Input:
     unit: str
     base: Number | None
     source: str
-    parameters: Mapping[str, Number | str] = field(default_factory=dict)
+    parameters: Mapping[str, Parameter] = field(default_factory=dict)
     distribution: str = "Uniform"
     number_format: str = "General"
     frozen: bool | str = False
@@ -263,11 +267,30 @@ class TestTable:
 
 
 @dataclass(frozen=True, slots=True)
+class DataTable:
+    """A table of numbers on sheet Inputs, such as the values of a discrete distribution and their probabilities.
+
+    Attributes:
+        name: defined name of its cells.
+        columns: headings.
+        formats: the number format of each column.
+        source: where the numbers come from.
+    """
+
+    name: str
+    title: str
+    columns: tuple[str, ...]
+    formats: tuple[str, ...]
+    rows: tuple[tuple[float, ...], ...]
+    source: str
+
+
+@dataclass(frozen=True, slots=True)
 class Template:
     """A whole workbook.
 
     Attributes:
-        rung: its place on the ladder of models, the simplest 1.
+        rung: its place on the ladder of models, the simplest 1; in its group.
         question: what it answers, one line.
         needs: the inputs it needs, one line.
         assumptions, constants: uncertain inputs; inputs held fixed.
@@ -278,6 +301,9 @@ class Template:
         waiting_note: what that sheet says of them.
         record: a table that may be pasted; it has a sheet of its own.
         tests: rows of tests that may be entered; they have a sheet of their own.
+        group: the field it belongs to; empty for the reconstruction of crashes, whose words its sheets have.
+        columns: the parameter columns of its assumptions.
+        data: tables that its distributions take.
     """
 
     title: str
@@ -303,6 +329,19 @@ class Template:
     waiting_note: str = ""
     record: PastedTable | None = None
     tests: TestTable | None = None
+    group: str = ""
+    columns: tuple[str, ...] = PARAMETER_COLUMNS
+    data: tuple[DataTable, ...] = ()
+
+    @property
+    def category(self) -> str:
+        """What the workbook's properties say of its place: `rung 3`, or the group and the place in it."""
+        return f"{self.group or 'rung'} {self.rung}"
+
+    @property
+    def checks(self) -> str:
+        """What its checks are called."""
+        return "check" if self.group else "physics check"
 
     @property
     def inputs(self) -> tuple[Input, ...]:

@@ -6,7 +6,7 @@ from datetime import UTC, datetime
 from io import BytesIO
 from pathlib import Path
 
-from xlsxwriter.utility import xl_rowcol_to_cell
+from xlsxwriter.utility import xl_range_abs, xl_rowcol_to_cell
 from xlsxwriter.workbook import Workbook
 
 from templates.description import Template
@@ -17,7 +17,7 @@ from templates.writer.fixed_size import fix_chart_sizes
 from templates.writer.guide_sheet import draw_guide
 from templates.writer.inputs_sheet import draw_inputs, draw_waiting
 from templates.writer.model_sheet import draw_model
-from templates.writer.places import RECORD, TESTS, WAITING, name_cells, places, reference
+from templates.writer.places import RECORD, TESTS, WAITING, data_places, drawing_sheet, name_cells, places, reference
 from templates.writer.record_sheet import draw_record
 from templates.writer.results_sheet import draw_results_wanted
 from templates.writer.scene_sheet import chart_size, draw_scene
@@ -60,7 +60,7 @@ def _write(template: Template, target: Path | BytesIO, values: Values) -> None:
                 "title": template.title,
                 "subject": template.question,
                 "comments": template.needs,
-                "category": f"rung {template.rung}",
+                "category": template.category,
                 "created": _CREATED,
             }
         )
@@ -76,7 +76,7 @@ def _write(template: Template, target: Path | BytesIO, values: Values) -> None:
             draw_tests(workbook.add_worksheet(TESTS), styles, template, at, values)
         draw_model(model, styles, template, at, values)
         if template.diagram is not None:
-            draw_scene(workbook, workbook.add_worksheet("Scene"), styles, template.diagram, values)
+            draw_scene(workbook, workbook.add_worksheet(drawing_sheet(template)), styles, template.diagram, values)
         if template.evidence:
             draw_evidence(workbook.add_worksheet("Evidence"), styles, template, at, values)
         wanted, guide = map(workbook.add_worksheet, ("Results wanted", "Guide"))
@@ -84,6 +84,9 @@ def _write(template: Template, target: Path | BytesIO, values: Values) -> None:
         draw_guide(guide, styles, template, values)
         for symbol, place in at.items():
             workbook.define_name(symbol, f"={reference(place, absolute=True)}")
+        for table, top in zip(template.data, data_places(template), strict=True):
+            area = xl_range_abs(top, 0, top + len(table.rows) - 1, len(table.columns) - 1)
+            workbook.define_name(table.name, f"=Inputs!{area}")
         for j, (row, column) in enumerate(name_cells(template), 1):
             cell = xl_rowcol_to_cell(row, column, row_abs=True, col_abs=True)
             workbook.define_name(name_cell(j, template.named), f"=Inputs!{cell}")

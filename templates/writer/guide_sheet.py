@@ -7,7 +7,7 @@ from xlsxwriter.worksheet import Worksheet
 from templates.description import GuideSection, Template
 from templates.writer.cached import Values
 from templates.writer.page import begin_sheet, fit_row, fit_to_pages, protect, write_label
-from templates.writer.styles import LEGEND, Styles
+from templates.writer.styles import Styles, legend
 
 __all__ = ["draw_guide"]
 
@@ -18,7 +18,7 @@ _GAP = 6.0
 def draw_guide(sheet: Worksheet, styles: Styles, template: Template, values: Values) -> None:
     """Write the sheet: section titles in the margin, text beside them; `values` are what its formulas give."""
     begin_sheet(sheet, styles, template.title, "Guide", _WIDTHS)
-    row = _draw_legend(sheet, styles, 3)
+    row = _draw_legend(sheet, styles, template, 3)
     for section in template.guide:
         sheet.set_row(row - 1, _GAP)
         row = _draw_section(sheet, styles, section, row, values)
@@ -26,13 +26,13 @@ def draw_guide(sheet: Worksheet, styles: Styles, template: Template, values: Val
     protect(sheet)
 
 
-def _draw_legend(sheet: Worksheet, styles: Styles, row: int) -> int:
+def _draw_legend(sheet: Worksheet, styles: Styles, template: Template, row: int) -> int:
     """Write what the colours mean from `row` on; the first free row, after a blank one, is returned."""
     sheet.write_string(row, 0, "Colours", styles("margin"))
-    for number, (look, colour, meaning) in enumerate(LEGEND, row + 1):
+    for number, (look, colour, meaning) in enumerate(legend(template.checks), row + 1):
         sheet.write_string(number, 0, colour, styles(look, centred=True))
         sheet.write_string(number, 1, meaning, styles("text"))
-    return row + len(LEGEND) + 2
+    return row + len(legend(template.checks)) + 2
 
 
 def _draw_section(sheet: Worksheet, styles: Styles, section: GuideSection, row: int, values: Values) -> int:

@@ -22,14 +22,15 @@ _WIDTHS = (48, 14, 16, 11, 9, 51, 22, 60)
 _TEXT_COLUMNS = (0, 5, 6, 7)
 _LOOK = {Role.STEP: "step", Role.ANSWER: "answer", Role.CHECK: "check"}
 _SUBTITLE = (
-    "Each value is a named cell. The Equation column prints its formula as the paper would; "
+    "Each value is a named cell. The Equation column prints its formula as {whose} would; "
     "a prime marks an equation rewritten to keep its digits."
 )
 
 
 def draw_model(sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values) -> None:
     """Write the sheet, locked; `values` are what the formulas give at the base case."""
-    begin_sheet(sheet, styles, template.title, _SUBTITLE, _WIDTHS)
+    subtitle = _SUBTITLE.format(whose="a book" if template.group else "the paper")
+    begin_sheet(sheet, styles, template.title, subtitle, _WIDTHS)
     for column, header in enumerate(_HEADERS):
         sheet.write_string(HEADER_ROW, column, header, styles("header"))
     notation = {each.symbol: each.symbol for each in template.read}

@@ -14,6 +14,8 @@ __all__ = [
     "VALUE_COLUMN",
     "WAITING",
     "Place",
+    "data_places",
+    "drawing_sheet",
     "name_cells",
     "places",
     "reference",
@@ -69,6 +71,22 @@ def rows_of_tests(tests: TestTable) -> tuple[int, int]:
     """The first row of what is read from the tests, and of how they scatter, counted from 0."""
     first = HEADER_ROW + 1 + tests.rows + _GAP
     return first, first + len(tests.read) + _GAP
+
+
+def data_places(template: Template) -> list[int]:
+    """The first row of numbers of each table of data, on sheet Inputs below all inputs."""
+    filled = [group for group in (template.assumptions, template.constants, template.optional) if group]
+    top = HEADER_ROW + 1 + sum(map(len, filled)) + _GAP * len(filled)
+    tops = []
+    for table in template.data:
+        tops.append(top)
+        top += len(table.rows) + _GAP
+    return tops
+
+
+def drawing_sheet(template: Template) -> str:
+    """The name of the sheet of its diagram."""
+    return "Drawing" if template.group else "Scene"
 
 
 def name_cells(template: Template) -> list[tuple[int, int]]:

@@ -112,7 +112,7 @@ def _draw_filters(
     _head(sheet, styles, top, "Filters", remark, values)
     one_forecast = any(kept.only_for for kept in template.filters)
     headers = (*_FILTERS, "Only for") if one_forecast else _FILTERS
-    add_table(sheet, styles, "xlmc_filters", top + 1, headers, len(template.filters))
+    add_table(sheet, styles, "xlmc_filters", top + 1, headers, max(len(template.filters), 1))
     formats = {equation.symbol: equation.number_format for equation in template.equations}
     for row, kept in enumerate(template.filters, top + 2):
         _draw_filter(sheet, styles, kept, row, values)
@@ -120,6 +120,10 @@ def _draw_filters(
             write_label(sheet, row, _ONLY_FOR, kept.only_for, styles("open text"), values, asks=True)
         shown = styles("step", formats[kept.symbol])
         write_formula(sheet, row, 1, reference(at[kept.symbol]), shown, values)
+    if not template.filters:
+        for column, _ in enumerate(headers):
+            sheet.write_blank(top + 2, column, None, styles("open text"))
+        return top + 3
     last = top + 1 + len(template.filters)
     guard(sheet, (top + 2, 1, last, 1), "A formula", _POINTS)
     criteria = _rejected(top + 3)
@@ -151,7 +155,7 @@ def _draw_checks(
     sheet: Worksheet, styles: Styles, template: Template, at: dict[str, Place], values: Values, top: int
 ) -> int:
     remark = "Must be TRUE at the base case and in the accepted trials; xlmc says so first where they are not."
-    _head(sheet, styles, top, "Physics checks", remark, values)
+    _head(sheet, styles, top, f"{template.checks.capitalize()}s", remark, values)
     checks = [each for each in template.equations if each.role is Role.CHECK and each.symbol != ALL_CHECKS]
     add_table(sheet, styles, "xlmc_checks", top + 1, _CHECKS, len(checks))
     for row, check in enumerate(checks, top + 2):

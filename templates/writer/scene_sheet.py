@@ -1,4 +1,4 @@
-"""Sheet `Scene`: a diagram drawn by a native chart from cells, and those cells."""
+"""Sheet `Scene`, or `Drawing`: a diagram drawn by a native chart from cells, and those cells."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ def draw_scene(workbook: Workbook, sheet: Worksheet, styles: Styles, diagram: Di
         sheet.write_string(first - 1, column, header, styles("header"))
     row = first
     for curve in diagram.curves:
-        _add_series(chart, curve.name, curve.look, row, len(curve.points))
+        _add_series(chart, sheet.name, curve.name, curve.look, row, len(curve.points))
         row = _draw_points(sheet, styles, curve, row, values)
     if diagram.plan:
         _draw_frame(sheet, styles, chart, first, row, values)
@@ -78,13 +78,13 @@ def _draw_points(sheet: Worksheet, styles: Styles, curve: Curve, row: int, value
     return row
 
 
-def _add_series(chart: Chart, name: str, look: Look | None, row: int, points: int) -> None:
-    """A curve of that look from so many rows; not drawn where there is none."""
+def _add_series(chart: Chart, sheet: str, name: str, look: Look | None, row: int, points: int) -> None:
+    """A curve of that look from so many rows of the sheet; not drawn where there is none."""
     chart.add_series(
         {
-            "name": ["Scene", row, 0] if names_a_vehicle(name) else name,
-            "categories": ["Scene", row, 1, row + points - 1, 1],
-            "values": ["Scene", row, 2, row + points - 1, 2],
+            "name": [sheet, row, 0] if names_a_vehicle(name) else name,
+            "categories": [sheet, row, 1, row + points - 1, 1],
+            "values": [sheet, row, 2, row + points - 1, 2],
             "line": {"none": True} if look is None else _LINES[look],
             "marker": {"type": "none"} if look is None else _MARKERS.get(look, {"type": "none"}),
         }
@@ -100,7 +100,7 @@ def _draw_frame(sheet: Worksheet, styles: Styles, chart: Chart, first: int, row:
             formula = f"{sign}{_MARGIN}*MAX(MAX({drawn}),-MIN({drawn}))"
             write_formula(sheet, row, column, formula, styles("step", "0.00"), values)
         row += 1
-    _add_series(chart, "Frame", None, row - 2, 2)
+    _add_series(chart, sheet.name, "Frame", None, row - 2, 2)
 
 
 def _finish(chart: Chart, diagram: Diagram) -> None:

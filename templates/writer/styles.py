@@ -7,7 +7,7 @@ from typing import Any
 from xlsxwriter.format import Format
 from xlsxwriter.workbook import Workbook
 
-__all__ = ["LEGEND", "Styles"]
+__all__ = ["Styles", "legend"]
 
 _INK = "#1F3044"
 _RULE = "#BFC7D1"
@@ -41,13 +41,18 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "paragraph": {"text_wrap": True, "valign": "top"},
 }
 
-LEGEND = (
-    ("assumption", "Green", "An assumption: an uncertain input, varied from trial to trial"),
-    ("fixed", "Yellow", "A fixed input: yours to change, the same in every trial"),
-    ("step", "Grey", "A formula, locked: change it only to change the model (Review, Unprotect Sheet; no password)"),
-    ("answer", "Blue", "A forecast: an answer, collected in every accepted trial"),
-    ("wrong", "Red", "A physics check that fails, a base value outside its range, or one that a filter rejects"),
-)
+_GREY = "A formula, locked: change it only to change the model (Review, Unprotect Sheet; no password)"
+
+
+def legend(check: str) -> tuple[tuple[str, str, str], ...]:
+    """Look, colour and meaning of each kind of cell, where a check is called so."""
+    return (
+        ("assumption", "Green", "An assumption: an uncertain input, varied from trial to trial"),
+        ("fixed", "Yellow", "A fixed input: yours to change, the same in every trial"),
+        ("step", "Grey", _GREY),
+        ("answer", "Blue", "A forecast: an answer, collected in every accepted trial"),
+        ("wrong", "Red", f"A {check} that fails, a base value outside its range, or one that a filter rejects"),
+    )
 
 
 class Styles:

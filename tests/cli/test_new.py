@@ -13,8 +13,8 @@ sys.path.append(str(committed_books.ROOT))
 
 from templates.build import TEMPLATES as DESCRIBED
 
-TEMPLATES = sorted(DESCRIBED, key=lambda name: DESCRIBED[name].rung)
-"""The simplest first."""
+TEMPLATES = sorted(DESCRIBED, key=lambda name: (DESCRIBED[name].group, DESCRIBED[name].rung))
+"""Those for crashes, then other fields; in each group the simplest first."""
 
 
 def test_lists_the_templates(xlmc):
@@ -24,7 +24,9 @@ def test_lists_the_templates(xlmc):
     assert [name for name in names if name in TEMPLATES] == TEMPLATES
     rows = [line for line in outcome.out.splitlines() if line.strip().partition(" ")[0] in TEMPLATES]
     assert all("?" in row for row in rows)  # the question and the needs in one line
-    assert len(outcome.out.strip().splitlines()) == len(rows) + 8  # title, headings, rules, blank, how to copy
+    assert len(outcome.out.strip().splitlines()) == len(rows) + 1 + 4 * 5 + 3 - 1  # titles and rules, how to copy
+    groups = [line.partition(",")[0] for line in outcome.out.splitlines() if line.endswith("the simplest first")]
+    assert groups == ["Reconstruction of crashes", "Engineering", "Projects and products"]
     assert "run-out" in outcome.out
     assert "--units si" in outcome.out
 
@@ -34,6 +36,12 @@ def test_copies_the_edition_asked_for(xlmc, tmp_path, units, expected):
     assert xlmc("new", "skid", "case.xlsx", "--units", units).code == 0
     cells = openpyxl.load_workbook(tmp_path / "case.xlsx")["Scene"]["C"]
     assert expected in [cell.value for cell in cells]
+
+
+@pytest.mark.parametrize("units", ["imperial", "si"])
+def test_a_template_without_units_has_one_edition(xlmc, tmp_path, units):
+    assert xlmc("new", "project", "plan.xlsx", "--units", units).code == 0
+    assert (tmp_path / "plan.xlsx").read_bytes() == committed_books.TEMPLATES["project"].read_bytes()
 
 
 def test_refuses_other_units(xlmc):
@@ -89,3 +97,17 @@ def test_results_and_marks_of_open_books_are_no_templates(tmp_path):
 def test_the_templates_are_the_committed_ones():
     files = [path for template in templates().values() for path in template.editions.values()]
     assert sorted(path.name for path in files) == sorted(path.name for path in committed_books.TEMPLATES.values())
+
+
+PAGE = (committed_books.ROOT / "docs" / "other-fields.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("name", [name for name in TEMPLATES if DESCRIBED[name].group])
+def test_the_page_of_other_fields_shows_what_is_printed(xlmc, name):
+    (block,) = (
+        part.partition("\n```")[0] for part in PAGE.split("```text\n") if part.startswith(f"$ xlmc new {name}\n")
+    )
+    assert xlmc("new", name).code == 0
+    outcome = xlmc("simulate", f"{name}.xlsx")
+    shown = "\n".join(line.rstrip() for line in outcome.out.splitlines())
+    assert block.partition(f"$ xlmc simulate {name}.xlsx\n")[2] in shown

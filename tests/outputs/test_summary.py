@@ -9,8 +9,10 @@ from xlmc.analysis.results.statements import statements
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.statistics import Estimate, format_estimate, proportion
+from xlmc.outputs.document import SECTIONS
 from xlmc.outputs.summary import (
     base_case,
     error_sentence,
@@ -145,6 +147,14 @@ def test_words_for_crashes_stand_in_books_of_crash_templates_only():
     assert "not reconstruction error: it does not say whether the model fits the crash" in crash
     other = error_sentence(Workbook("beam.xlsx", {}))
     assert "not model error: it does not say whether the model is right" in other
+
+
+@pytest.mark.parametrize(
+    ("name", "headings"), [("skid", ("The scene", "Physics checks")), ("beam", ("The drawing", "Checks"))]
+)
+def test_headings_of_a_report_have_the_words_of_its_field(name, headings):
+    words = vocabulary_of(read_workbook(BOOKS[name]))
+    assert tuple(SECTIONS[section].title(words) for section in ("scene", "checks")) == headings
 
 
 def test_the_base_case_is_computed_with_frozen_cells_held(run):

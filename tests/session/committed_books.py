@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Final
 
-__all__ = ["BOOKS", "EXAMPLES", "ROOT", "TEMPLATES"]
+__all__ = ["BOOKS", "CRASHES", "EXAMPLES", "ROOT", "TEMPLATES"]
 
 ROOT: Final = Path(__file__).resolve().parents[2]
 
@@ -42,7 +42,20 @@ _TEMPLATES: Final = (
     "video-speed",
 )
 
+_OTHER_FIELDS: Final = (
+    "beam",
+    "beam-si",
+    "mass-calibration",
+    "project",
+    "tolerance-stack",
+    "tolerance-stack-si",
+    "warranty",
+)
+"""A model without units has one edition."""
+
 EXAMPLES: Final = {name: ROOT / "examples" / f"{name}.xlsx" for name in _EXAMPLES}
-TEMPLATES: Final = {name + end: ROOT / "templates" / f"{name}{end}.xlsx" for name in _TEMPLATES for end in ("", "-si")}
+CRASHES: Final = {name + end: ROOT / "templates" / f"{name}{end}.xlsx" for name in _TEMPLATES for end in ("", "-si")}
+"""The templates for the reconstruction of crashes."""
+TEMPLATES: Final = CRASHES | {name: ROOT / "templates" / f"{name}.xlsx" for name in _OTHER_FIELDS}
 BOOKS: Final = EXAMPLES | TEMPLATES
 """Name without its ending -> file."""

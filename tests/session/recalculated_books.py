@@ -18,6 +18,6 @@ _BOTH: Final = [name for name in TEMPLATES if not name.endswith("-si")]
 RECALCULATED: Final = (
     "intersection",
     "intersection-momentum",
-    *(f"{name}-si" if turn % 2 else name for turn, name in enumerate(_BOTH)),
+    *(f"{name}-si" if turn % 2 and f"{name}-si" in TEMPLATES else name for turn, name in enumerate(_BOTH)),
 )
 """Names of committed books."""

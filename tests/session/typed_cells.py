@@ -20,12 +20,13 @@ def model_of(workbook: Workbook) -> CompiledModel:
 
 
 def named_cells(workbook: Workbook) -> dict[str, Cell]:
-    """Name -> its cell."""
+    """Name -> its cell; names of tables of data are left out."""
     found = {}
     for each in workbook.names:
         if not each.name.startswith("_xlnm"):
             sheet, _, place = each.text.removeprefix("=").rpartition("!")
-            found[each.name] = parse_address(place, sheet.strip("'"))
+            if ":" not in place:
+                found[each.name] = parse_address(place, sheet.strip("'"))
     return found
 
 

@@ -52,13 +52,11 @@ def builders():
 @pytest.fixture(scope="session")
 def described(builders):
     """File name without its ending -> what the workbook was built from, in its own units."""
-    from templates.editions import Edition, edition
-
     build = builders["templates"]
     editions = {
-        build.file_name(name, units).removesuffix(".xlsx"): edition(template, units)
-        for name, template in build.TEMPLATES.items()
-        for units in Edition
+        build.file_name(name, units).removesuffix(".xlsx"): template
+        for name, both in build.TEMPLATES.items()
+        for units, template in build.editions(both).items()
     }
     return editions | builders["examples"].EXAMPLES
 

@@ -89,6 +89,22 @@ CASES = [
     ("pedestrian", "check_efficiency", {"efficiency": 1.1}),
     ("pedestrian", "check_walking", {"walking": 16, "walked": 40}),
     ("pedestrian", "check_response", {"walked": 2}),
+    ("beam", "check_beam", {"span": -24}),
+    ("beam", "check_loads", {"live": -1}),
+    ("beam", "check_steel", {"fy": 345}),
+    ("beam", "check_factors", {"fabrication": 100}),
+    ("tolerance-stack", "check_parts", {"ring": -0.492}),
+    ("tolerance-stack", "check_limits", {"gap_min": 0.02}),
+    ("tolerance-stack", "check_metal", {"a_housing": 0.0128, "a_parts": 6500}),
+    ("mass-calibration", "check_density", {"rho_W": 8}),
+    ("mass-calibration", "check_air", {"rho_a": 0.0012}),
+    ("mass-calibration", "check_mass", {"m_Rc": 100}),
+    ("project", "check_days", {"t_site": -45}),
+    ("project", "check_dates", {"deadline": 46000}),
+    ("project", "check_budget", {"budget": 0}),
+    ("project", "check_risks", {"r_permit": 0.25}),
+    ("warranty", "check_life", {"shape": -1.8}),
+    ("warranty", "check_share check_claims", {"share_refused": 5, "claims": 20_000}),
     # An impulse that pulls always adds energy too.
     ("momentum", "check_energy check_closing", {"alpha_1": 80, "alpha_2": 310, "beta_1": 60, "beta_2": 250}),
 ]
@@ -103,7 +119,7 @@ def test_a_contradiction_turns_its_check_red(template, failing, changes, cells, 
 
 
 def test_every_check_of_every_template_is_tried(described):
-    """Those of planar-impact are in test_planar_impact.py.
+    """Those of planar-impact are in test_planar_impact.py, check_repairs of a table of data in test_other_fields.py.
 
     check_identity of time-distance and check_least of airborne hold for all inputs: they are for formulas typed over.
     """
@@ -115,4 +131,5 @@ def test_every_check_of_every_template_is_tried(described):
         for row in described[name].equations
         if row.role.value == "check" and row.symbol != "checks_hold"
     }
-    assert tried == checks - {("time-distance", "check_identity"), ("airborne", "check_least")}
+    elsewhere = {("time-distance", "check_identity"), ("airborne", "check_least"), ("warranty", "check_repairs")}
+    assert tried == checks - elsewhere

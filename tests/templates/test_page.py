@@ -10,7 +10,7 @@ PAGE = (Path(__file__).resolve().parents[2] / "docs" / "templates.md").read_text
 
 def test_every_template_is_on_the_page_in_the_order_of_the_ladder():
     rows = re.findall(r"^\| `([a-z-]+)` \|", PAGE, re.MULTILINE)
-    assert rows == sorted(TEMPLATES, key=lambda name: TEMPLATES[name].rung)
+    assert rows == sorted(TEMPLATES, key=lambda name: (TEMPLATES[name].group, TEMPLATES[name].rung))
 
 
 def test_every_example_is_on_the_page(builders):

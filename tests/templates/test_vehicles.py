@@ -4,7 +4,7 @@ import re
 from dataclasses import replace
 
 import pytest
-from committed_books import TEMPLATES
+from committed_books import CRASHES
 
 from templates.description import Equation
 from templates.vehicles import for_both, label_formula, names_a_vehicle, shown_label
@@ -15,7 +15,7 @@ from xlmc.montecarlo.model.loading import build_model
 
 NAMED = [
     name
-    for name in TEMPLATES
+    for name in CRASHES
     if not name.startswith(("skid", "critical-speed-yaw")) and (not name.endswith("-si") or name == "planar-impact-si")
 ]
 """With one SI edition: all name the vehicles where the imperial ones do, as `test_editions.py` shows."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 from typing import Final
 
@@ -22,6 +23,11 @@ _UNITS: Final = {"imperial": "", "si": "-si"}
 
 _BLANK: Final = "blank"
 """The workbook for a model of one's own; it is made, and not copied."""
+
+_CRASH: Final = "Reconstruction of crashes"
+"""The group of the templates whose category is a rung of the ladder of models."""
+
+_HEADINGS: Final = ("Template", "Answers", "Needs")
 
 _PACKAGE: Final = Path(__file__).parents[1]
 
@@ -50,11 +56,9 @@ def new(template: str | None, book: Path | None, units: str, overwrite: bool) ->
     if template not in known:
         near = did_you_mean(template, (_BLANK, *known)) or f" There are {', '.join((_BLANK, *known))}."
         raise click.UsageError(f"there is no template {template!r}.{near}")
-    if units not in known[template].editions:
-        raise WorkbookError(f"the {units} edition of {template} is missing", hint="install xlmc again")
     target = _target(template, book)
     editions = [edition for entry in known.values() for edition in entry.editions.values()]
-    _copy(known[template].editions[units], target, editions, overwrite=overwrite)
+    _copy(known[template].in_units(units), target, editions, overwrite=overwrite)
     say(f"{target} is ready: open it, fill in the green cells, then run: xlmc simulate {target}")
 
 
@@ -86,8 +90,11 @@ def _list(known: Mapping[str, Template]) -> None:
     from xlmc.cli.printing import table
 
     own = (_BLANK, "A model of your own", "Formulas of your own; tables with a worked row each")
-    rows = [own, *((name, entry.question, entry.needs) for name, entry in known.items())]
-    table("Templates, the simplest first", ("Template", "Answers", "Needs"), rows)
+    groups = groupby(known.items(), key=lambda item: item[1].group)
+    table("Templates", _HEADINGS, [own])
+    for group, entries in groups:
+        rows = [(name, entry.question, entry.needs) for name, entry in entries]
+        table(f"{group}, the simplest first", _HEADINGS, rows)
     say(paragraph("xlmc prepare BOOK.xlsx adds the tables to a workbook that you have already."))
     say(paragraph("xlmc new TEMPLATE my-case.xlsx copies one; --units si for metres, kilograms and km/h."))
 
@@ -110,17 +117,23 @@ class Template:
         editions: units -> file.
         question: what it answers.
         needs: the inputs it needs.
-        rung: its step on the ladder of models, such as `rung 1`; the simplest come first.
+        group: the field it belongs to.
+        place: its place there, from 1; the simplest come first.
     """
 
     editions: Mapping[str, Path]
     question: str
     needs: str
-    rung: str
+    group: str
+    place: int
+
+    def in_units(self, units: str) -> Path:
+        """Return the edition in these units; the only one where no unit tells two apart, as in a model of costs."""
+        return self.editions.get(units) or next(iter(self.editions.values()))
 
 
 def templates(package: Path = _PACKAGE) -> dict[str, Template]:
-    """Every template by name, the simplest first.
+    """Every template by name: those for crashes, then other fields; in each group the simplest first.
 
     Args:
         package: the folder of the installed package; the templates are in it, or in a checkout beside it.
@@ -133,7 +146,7 @@ def templates(package: Path = _PACKAGE) -> dict[str, Template]:
         names = [name for name in books if not any(end and name.endswith(end) for end in _UNITS.values())]
         if names:
             found = {name: _template(name, books) for name in names}
-            return dict(sorted(found.items(), key=lambda item: (len(item[1].rung), item[1].rung, item[0])))
+            return dict(sorted(found.items(), key=_order))
     raise WorkbookError("the templates are missing", where=package, hint="install xlmc again")
 
 
@@ -146,4 +159,10 @@ def _template(name: str, books: Mapping[str, Path]) -> Template:
     core = read_parts(books[name].read_bytes()).get("docProps/core.xml", b"<none/>")
     properties = ElementTree.fromstring(core)
     question, needs = (properties.findtext(_DUBLIN_CORE + key, default="") for key in ("subject", "description"))
-    return Template(editions, question, needs, properties.findtext(_CATEGORY, default=""))
+    group, _, place = properties.findtext(_CATEGORY, default="").rpartition(" ")
+    return Template(editions, question, needs, _CRASH if group == "rung" else group, int(place or 0))
+
+
+def _order(item: tuple[str, Template]) -> tuple[bool, str, int, str]:
+    name, template = item
+    return template.group != _CRASH, template.group, template.place, name

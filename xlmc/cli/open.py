@@ -73,7 +73,7 @@ def _library(book: Path | None, functions: OwnFunctions | None) -> Library:
     from xlmc.outputs.live.stored_scenarios import Keeper, state_folder
 
     samples = [
-        Sample(name if units == "imperial" else f"{name} ({units.upper()})", template.question, path)
+        Sample(name, template.question, path, units.upper() if units != "imperial" else "")
         for name, template in templates().items()
         for units, path in template.editions.items()
     ]

@@ -93,8 +93,10 @@ def test_a_chart_that_is_no_xml_is_refused():
         scene_drawing(Workbook("book.xlsx", {}, parts={"xl/charts/chart1.xml": b"<!DOCTYPE x>"}))
 
 
-@pytest.mark.parametrize("name", ["planar-impact", "planar-forward-si", "skid", "critical-speed-yaw"])
+@pytest.mark.parametrize(
+    "name", ["planar-impact", "planar-forward-si", "skid", "critical-speed-yaw", "beam-si", "project"]
+)
 def test_the_scene_of_a_template_is_drawn(name):
     drawing = scene_drawing(load(TEMPLATES / f"{name}.xlsx").workbook)
     assert paths(drawing)
-    assert drawing.said.startswith("The scene, with ")
+    assert drawing.said.startswith("The drawing, with ")

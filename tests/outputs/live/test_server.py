@@ -296,6 +296,15 @@ def test_a_template_is_copied_and_never_over_a_file(tmp_path, monkeypatch):
     assert path.read_bytes() == b"a person's"
 
 
+def test_both_editions_of_a_template_stand_in_one_row(tmp_path):
+    samples = [Sample("beam", "?", TEMPLATES["beam"]), Sample("beam", "?", TEMPLATES["beam-si"], "SI")]
+    library = Library(Keeper(tmp_path / "state"), folder=tmp_path, samples=samples)
+    (row,) = library.templates()
+    ((si, key),) = ((each["units"], each["key"]) for each in row["editions"])
+    assert si == "SI"
+    assert library.path(library.copy_template(key)).read_bytes() == TEMPLATES["beam-si"].read_bytes()
+
+
 def test_the_start_page_copies_a_template(running, tmp_path):
     samples = [Sample("skid", "How fast?", TEMPLATES["skid"]), Sample("lost", "?", tmp_path / "lost.xlsx")]
     server = running(folder=tmp_path, samples=samples)

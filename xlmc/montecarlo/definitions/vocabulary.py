@@ -27,6 +27,8 @@ class Vocabulary:
         case: what a trial is a possible one of.
         asker: who asks for evidence.
         such_as: an example of a filter, after a comma; may be empty.
+        drawing: what the workbook draws.
+        checks: what the checks are called.
     """
 
     model_error: str
@@ -34,6 +36,8 @@ class Vocabulary:
     case: str
     asker: str
     such_as: str
+    drawing: str
+    checks: str
 
     def fill(self, text: str) -> str:
         """Return the text with these words in place of their names in braces."""
@@ -41,9 +45,15 @@ class Vocabulary:
 
 
 CRASH: Final = Vocabulary(
-    "reconstruction error", "fits the crash", "crash", "an opponent", ", such as a restitution between 0 and 1"
+    "reconstruction error",
+    "fits the crash",
+    "crash",
+    "an opponent",
+    ", such as a restitution between 0 and 1",
+    "scene",
+    "physics checks",
 )
-NEUTRAL: Final = Vocabulary("model error", "is right", "case", "a reader", "")
+NEUTRAL: Final = Vocabulary("model error", "is right", "case", "a reader", "", "drawing", "checks")
 
 
 def vocabulary_of(workbook: Workbook) -> Vocabulary:

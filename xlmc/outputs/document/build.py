@@ -10,6 +10,7 @@ from xlmc.analysis.results.record import make_record
 from xlmc.analysis.studies.scenario_answers import scenario_answers
 from xlmc.errors import SimulationError
 from xlmc.excel.workbook.printable import label
+from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.outputs.case_fields import case_of
 from xlmc.outputs.document.parts import Block, Document, Heading
@@ -86,9 +87,10 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
     scenario_answers(simulation)  # cells may ask about them, and warnings tell of those that cannot
     material = Material(simulation, make_record(simulation, command), _forecasts(wanted, simulation.model))
     blocks: list[Block] = []
+    words = vocabulary_of(workbook)
     for name, section in SECTIONS.items():
         found = list(section.make(material)) if not wanted.sections or name in wanted.sections else []
-        blocks += [Heading(section.heading), *found] if found else []
+        blocks += [Heading(section.title(words)), *found] if found else []
     title = case["Title"] or f"Results of {workbook.name}"
     number = case["Case number"]
     cover = [(name, text) for name, text in case.fields.items() if name != "Title"]
@@ -120,7 +122,8 @@ def further_sections(simulation: RunResult, output: str) -> dict[str, tuple[str,
     from xlmc.outputs.document.report_sections import Material
 
     material = Material(simulation, make_record(simulation, None), _forecasts(Wanted(), simulation.model))
-    found = {name: (section.heading, list(section.make(material))) for name, section in rows.items()}
+    words = vocabulary_of(simulation.model.workbook)
+    found = {name: (section.title(words), list(section.make(material))) for name, section in rows.items()}
     return {name: (heading, blocks) for name, (heading, blocks) in found.items() if blocks}
 
 

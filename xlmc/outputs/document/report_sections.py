@@ -165,7 +165,7 @@ def _scene(material: Material) -> Iterator[Block]:
     if drawn is not None:
         yield material.figure(
             drawn,
-            "The base case as the chart on the workbook's sheet Scene draws it, with the numbers that were stored in "
+            "The base case as the chart of the workbook draws it, with the numbers that were stored in "
             "the chart when the workbook was last saved.",
         )
 
@@ -430,7 +430,8 @@ def _checks(material: Material) -> Iterator[Block]:
         for each in checks
     ]
     heads = ("Check", "Base case", "Trials failing", "What it means if it fails")
-    yield material.table("The physics checks: each cell must be TRUE.", heads, lines, (2.6, 0.9, 0.9, 4.6), (2,))
+    called = vocabulary_of(material.simulation.model.workbook).checks
+    yield material.table(f"The {called}: each cell must be TRUE.", heads, lines, (2.6, 0.9, 0.9, 4.6), (2,))
 
 
 def _equations(material: Material) -> Iterator[Block]:

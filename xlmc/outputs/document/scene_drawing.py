@@ -1,4 +1,4 @@
-"""The scene as the workbook draws it: the chart of points and lines on its sheet Scene.
+"""The scene as the workbook draws it: the chart of points and lines on its sheet Scene, or Drawing.
 
 The points are those that the program that saved the workbook stored in the chart, so they are those of its base case.
 Axes of the same units have the same scale, so that angles and lengths are right.
@@ -21,7 +21,7 @@ from xlmc.outputs.sheets.styles import GRID, INK
 __all__ = ["scene_drawing"]
 
 _CHART: Final = re.compile(r"xl/charts/chart\d+\.xml")
-_SHEET: Final = re.compile(r"'?scene'?!", re.IGNORECASE)
+_SHEET: Final = re.compile(r"'?(scene|drawing)'?!", re.IGNORECASE)
 _COLOUR: Final = re.compile("[0-9A-Fa-f]{6}")
 _MOST_SERIES, _MOST_POINTS = 40, 2_000
 """What a scene has at most; a chart with more is another kind of picture, and is not drawn."""
@@ -42,7 +42,7 @@ class _Line:
 
 
 def scene_drawing(workbook: Workbook) -> Drawing | None:
-    """Draw the first chart of the sheet Scene; return None if the workbook has none.
+    """Draw the first chart of the sheet Scene, or Drawing; return None if the workbook has none.
 
     Raises:
         WorkbookError: the part of a chart is no XML.
@@ -138,5 +138,5 @@ def _drawn(lines: list[_Line], axes: list[str]) -> Drawing:
         found.append(text_at((_LEFT + right) / 2, bottom + 30, axes[0]))
         found.append(text_at(10, (_TOP + bottom) / 2, axes[1], turned=True))
     height = max(bottom + 38, _TOP + 16 * len(lines) + 10)
-    said = f"The scene, with {', '.join(line.name for line in lines)}"
+    said = f"The drawing, with {', '.join(line.name for line in lines)}"
     return drawing(found, right + 220, height, said, 160.0)

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.vocabulary import Vocabulary
     from xlmc.outputs.document.parts import Block
     from xlmc.outputs.document.report_sections import Material
 
@@ -21,7 +22,7 @@ class Section:
     """A section of what a run found. One row here, and it is in the report and in every other output.
 
     Attributes:
-        heading: above it.
+        heading: above it, with the words of the workbook's field in braces.
         make: makes its blocks; none where there is nothing to say.
         elsewhere: output -> where it says the same in a form of its own, or why it does not show it.
     """
@@ -29,6 +30,11 @@ class Section:
     heading: str
     make: Callable[[Material], Iterator[Block]]
     elsewhere: Mapping[str, str] = field(default_factory=dict)
+
+    def title(self, words: Vocabulary) -> str:
+        """Return the heading in the words of a field."""
+        filled = words.fill(self.heading)
+        return filled[:1].upper() + filled[1:]
 
 
 def _in_report(name: str) -> Callable[[Material], Iterator[Block]]:
@@ -46,7 +52,7 @@ _REPORT_ONLY: Final = dict.fromkeys(OUTPUTS, "it explains the report")
 
 SECTIONS: Final[dict[str, Section]] = {
     "answer": Section("The question and the answer", _in_report("answer"), _STATED),
-    "scene": Section("The scene", _in_report("scene"), _IN_WORKBOOK),
+    "scene": Section("The {drawing}", _in_report("scene"), _IN_WORKBOOK),
     "forecasts": Section(
         "The forecasts",
         _in_report("forecasts"),
@@ -83,7 +89,7 @@ SECTIONS: Final[dict[str, Section]] = {
         {"page": "Sensitivity", "sheets": "Sensitivity", "terminal": "too long", "notebook": "xlmc.sensitivities"},
     ),
     "checks": Section(
-        "Physics checks",
+        "{checks}",
         _in_report("checks"),
         {"page": "Checks", "sheets": "Results", "terminal": "Checks", "notebook": "warnings name those that fail"},
     ),

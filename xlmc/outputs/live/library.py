@@ -12,7 +12,7 @@ import secrets
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final
 
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.excel.own_functions import OwnFunctions
@@ -38,11 +38,13 @@ class Sample:
     Attributes:
         question: what it answers.
         path: where it lies.
+        units: which of its editions it is; empty where there is one only.
     """
 
     name: str
     question: str
     path: Path
+    units: str = ""
 
 
 class Library:
@@ -101,9 +103,15 @@ class Library:
             for each in found
         ]
 
-    def templates(self) -> list[dict[str, str]]:
-        """Return the templates: name, question and key."""
-        return [{"name": each.name, "question": each.question, "key": key} for key, each in self._samples.items()]
+    def templates(self) -> list[dict[str, Any]]:
+        """Return each template once: name, question, key, and its further editions with their units and keys."""
+        rows: dict[str, dict[str, Any]] = {}
+        for key, each in self._samples.items():
+            if each.name in rows:
+                rows[each.name]["editions"].append({"units": each.units, "key": key})
+            else:
+                rows[each.name] = {"name": each.name, "question": each.question, "key": key, "editions": []}
+        return list(rows.values())
 
     def opened(self, path: Path) -> None:
         """Note that a workbook was opened."""

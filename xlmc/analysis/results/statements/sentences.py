@@ -208,7 +208,8 @@ def _range_text(found: RoundedRange, nominal: float, units: str, trials: int) ->
     elif share.value == 1.0:
         return f"{percent_text(share)}, {between}"
     if nominal > LIKELIER:
-        return f"the {number_text(100.0 * nominal)} % range ({percent_text(share)}) lies {between}"
+        lies = f"is {found.low_text}{units}" if found.low == found.high else f"lies {between}"
+        return f"the {number_text(100.0 * nominal)} % range ({percent_text(share)}) {lies}"
     if surely_above(share, EVEN):
         return f"more probable than not ({percent_text(share)}) {between}"
     if nominal > EVEN:

@@ -17,8 +17,8 @@ const Start = {
   books(found) {
     this.list("books", found.books, ({ name, key }) => [this.link(name, key)]);
     this.list("recent", found.recent, ({ name, key, folder }) => [this.link(name, key), make("small", {}, " in ", named(folder))]);
-    this.list("templates", found.templates, ({ name, key, question }) => [
-      make("button", { type: "button", text: name, on: { click: () => this.wire.say({ kind: "copy", key }) } }), ` ${question}`]);
+    this.list("templates", found.templates, ({ name, key, question, editions }) => [
+      this.copy(name, key), ...editions.flatMap((each) => [" ", this.copy(each.units, each.key, `${name}, ${each.units}`)]), ` ${question}`]);
     document.getElementById("folder").textContent = found.folder;
     if (found.trouble) this.trouble({ text: found.trouble });
   },
@@ -30,6 +30,10 @@ const Start = {
   list(id, rows, line) {
     const shown = rows.map((row) => make("li", {}, ...line(row)));
     document.getElementById(id).replaceChildren(...(shown.length ? shown : [make("li", { class: "remark", text: "none" })]));
+  },
+
+  copy(text, key, label = text) {
+    return make("button", { type: "button", text, "aria-label": label, on: { click: () => this.wire.say({ kind: "copy", key }) } });
   },
 
   link(name, key) {

@@ -48,6 +48,15 @@ def parts(path):
         return {name: package.read(name) for name in package.namelist() if not name.endswith("/")}
 
 
+def test_an_answer_that_cannot_be_computed_has_no_row_and_is_named(xlmc, tmp_path):
+    """A formula with a decimal comma, as `clone_sheet.xlsx` of Apache POI has them beside a saved value."""
+    outcome = xlmc("prepare", SHARED / "apache__clone_sheet.xlsx", "-o", tmp_path / "ready.xlsx")
+    assert outcome.code == 0
+    assert "Arkusz1!M6 cannot be computed (one value is needed here" in outcome.err
+    assert "Arkusz1!M6" not in outcome.out
+    assert xlmc("simulate", tmp_path / "ready.xlsx", "-n", "100").code == 0
+
+
 @pytest.fixture
 def book(tmp_path):
     return write(MODEL, tmp_path / "beam.xlsx")

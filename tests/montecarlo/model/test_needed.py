@@ -45,6 +45,9 @@ def test_frozen_assumptions_are_not_drawn(scene):
     found = scene({"a": {"cell": "A1", "frozen": True, **UNIT}, "b": {"cell": "A2", **UNIT}}, {"x": "B1"})
     assert list(found.live) == ["b"]
     assert found.idle == ()
+    assert (
+        scene({"a": {"cell": "A9", "frozen": True, **UNIT}, "b": {"cell": "A2", **UNIT}}, {"x": "B1"}).notices() == ()
+    )
     assert Cell("S", 1, 1) in found.graph.reached
 
 

@@ -18,6 +18,9 @@ _FARTHEST: Final = 30
 _LONGEST: Final = 80
 
 _IN_BRACKETS: Final = re.compile(r"^(?P<name>.*\S)\s*[(\[](?P<unit>[^()\[\]]{1,12})[)\]]\s*:?$")
+_WHOLLY_IN_BRACKETS: Final = re.compile(r"^[(\[].*[)\]]$")
+_SYMBOL: Final = re.compile(r"^[A-Za-z]\d?$|\w[(\[]")
+"""A letter with an index, which may be of a quantity; `kN` and `ft` are no such letters."""
 _SYMBOLS: Final = (
     "m mm cm km µm μm um nm in inch inches ft feet yd mi mile miles s sec second seconds ms min minutes h "
     "hr hrs hour hours d day days week weeks wk month months mo yr yrs year years a g kg mg t ton tons "
@@ -44,12 +47,16 @@ def label_of(book: Workbook, cell: Cell) -> Label:
     """Return the name and the unit of a cell by the texts around it.
 
     The name is the nearest text to the left. Where another number stands between, the cell is one of a row of numbers,
-    and the text above it is added; without a text to the left, it is that alone. A symbol of a unit right of the cell,
-    between it and its name, or in brackets behind the name, is its unit.
+    and the text above it is added; without a text to the left, it is that alone. So it is for a row of cells with
+    headings right above, and nothing beside or below it. A symbol of a unit right of the cell, between it and its name
+    or its heading, or in brackets behind the name, is its unit.
     """
     left, between = _left(book, cell)
-    above = _above(book, cell)
-    unit = ""
+    above, unit = _above(book, cell)
+    if _is_under_heading(book, cell):
+        left = []
+    if left and not between:
+        unit = ""
     if len(left) > 1 and not between and _is_unit(left[0]):
         unit, left = left[0], left[1:]
     name = left[0] if left else ""
@@ -89,12 +96,40 @@ def _left(book: Workbook, cell: Cell) -> tuple[list[str], bool]:
     return texts, between
 
 
-def _above(book: Workbook, cell: Cell) -> str:
+def _above(book: Workbook, cell: Cell) -> tuple[str, str]:
+    """Return the heading above and the unit between: `Gain (Per Year)` and `€` of a column with these in three rows."""
+    unit, more = "", ""
     for row in range(cell.row - 1, max(0, cell.row - 1 - _FARTHEST), -1):
-        value = book.content(Cell(cell.sheet, row, cell.column)).value
-        if isinstance(value, str) and value.strip():
-            return value.strip()
-    return ""
+        text = _text(book, Cell(cell.sheet, row, cell.column))
+        if not text:
+            continue
+        if not unit and not more and _is_plainly_unit(text) and _text(book, Cell(cell.sheet, row - 1, cell.column)):
+            unit = text
+        elif not more and _WHOLLY_IN_BRACKETS.match(text) and _text(book, Cell(cell.sheet, row - 1, cell.column)):
+            more = f" {text}"
+        else:
+            return f"{text}{more}", unit
+    return more.strip(), unit
+
+
+def _text(book: Workbook, cell: Cell) -> str:
+    """Return the text of a cell that no formula computes; otherwise an empty one."""
+    if cell.row < 1:
+        return ""
+    value = book.content(cell).value
+    return value.strip() if isinstance(value, str) else ""
+
+
+def _is_under_heading(book: Workbook, cell: Cell) -> bool:
+    """Return whether a text stands right above, a blank cell below, and one left of the numbers beside the cell."""
+    heading = _text(book, Cell(cell.sheet, cell.row - 1, cell.column))
+    if not heading or _is_unit(heading) or not book.content(Cell(cell.sheet, cell.row + 1, cell.column)).is_blank:
+        return False
+    for column in range(cell.column - 1, 0, -1):
+        content = book.content(Cell(cell.sheet, cell.row, column))
+        if content.is_blank or isinstance(content.value, str):
+            return content.is_blank
+    return False
 
 
 def _is_unit(text: str) -> bool:
@@ -105,6 +140,17 @@ def _is_unit(text: str) -> bool:
     """
     factors = [_EXPONENT.sub("", each) for each in _JOINED.split(re.sub(r"[()\[\]]", "", text)) if each]
     return bool(factors) and all(each in _BASES or each == "1" for each in factors) and len(text) <= 14
+
+
+def _is_plainly_unit(text: str) -> bool:
+    """Return whether a heading can be nothing but a unit; a letter alone may be the symbol of a quantity.
+
+    >>> [_is_plainly_unit(text) for text in ("€", "kN", "(m)", "m/s²", "m", "l1", "m(i)")]
+    [True, True, True, True, False, False, False]
+    """
+    if _WHOLLY_IN_BRACKETS.match(text):
+        return _is_unit(text)
+    return _is_unit(text) and not _SYMBOL.match(text)
 
 
 def _stands_for(book: Workbook, text: str, cell: Cell) -> bool:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator
 from dataclasses import dataclass
+from itertools import islice
 from typing import Final
 
-from xlmc.errors import DefinitionError
+from xlmc.engine.graph.lowering import lower_cells
+from xlmc.errors import DefinitionError, FormulaError
 from xlmc.excel.address import Area, Cell, column_letters
 from xlmc.excel.formula import Graph, Resolver, build_graph
 from xlmc.excel.formula.precedents import references
@@ -104,12 +106,41 @@ def proposals(
     inputs, ends = (
         sorted(cells, key=lambda cell: (order[cell.sheet], cell.row, cell.column)) for cells in (inputs, ends)
     )
+    shown_ends = list(islice(_computable(book, ends, inputs, passed), most)) if forecasts is None else ends
+    further = sum(cell not in shown_ends for cell in ends) - sum(cell in ends for cell, _ in passed)
     return Proposals(
         tuple(_proposal(book, cell, names) for cell in inputs),
-        tuple(_proposal(book, cell, answers) for cell in ends[:most]),
-        max(0, len(ends) - most),
+        tuple(_proposal(book, cell, answers) for cell in shown_ends),
+        max(0, further),
         tuple(passed),
     )
+
+
+def _computable(
+    book: Workbook, cells: list[Cell], inputs: list[Cell], passed: list[tuple[Cell, str]]
+) -> Iterator[Cell]:
+    """Yield the cells that a run can compute, with all inputs held, and note why it cannot the others."""
+    resolver, varying = (
+        Resolver(book, inputs),
+        build_graph(Resolver(book, strict=False), cells, frozenset(inputs), strict=False).varying,
+    )
+    held = {cell: float(book.content(cell).value) for cell in inputs}  # type: ignore[arg-type]
+
+    def fault(wanted: list[Cell]) -> str:
+        try:
+            lowering = lower_cells(resolver, wanted, {}, held)
+        except FormulaError as error:
+            return error.message
+        return next((each.message for cell, each in lowering.faults.items() if cell in varying), "")
+
+    sure = 0 if fault(cells[:MOST_FORECASTS]) else MOST_FORECASTS
+    yield from cells[:sure]
+    for cell in cells[sure:]:
+        why = fault([cell])
+        if why:
+            passed.append((cell, f"cannot be computed ({why})"))
+        else:
+            yield cell
 
 
 def _in_own_table(book: Workbook, cell: Cell) -> bool:

@@ -53,7 +53,7 @@ class Needed:
         return tuple(name for stage in self.stages for name in stage)
 
     def notices(self, checked: Container[Cell] = ()) -> tuple[Notice, ...]:
-        """Say what was left out; draws in cells, which may be very many, together.
+        """Say what was left out but for frozen rows, which vary nothing; draws in cells, which may be many, together.
 
         Args:
             checked: the cells that checks need.
@@ -64,7 +64,8 @@ class Needed:
             return Notice(f"no forecast or filter needs {what}{frozen}", cell)
 
         calls = [a.cell for a in self.idle if isinstance(a.cell, InFormula)]
-        found = [notice(f"the assumption {a.name!r}", a.cell) for a in self.idle if not isinstance(a.cell, InFormula)]
+        rows = [a for a in self.idle if not isinstance(a.cell, InFormula) and not a.frozen]
+        found = [notice(f"the assumption {a.name!r}", a.cell) for a in rows]
         if calls:
             many = f"{len(calls):,} draws in cells, of which this is the first"
             found.append(notice("this draw" if len(calls) == 1 else many, calls[0]))

@@ -193,7 +193,7 @@ def test_no_file_is_ever_loaded_unasked(xlmc, book, tmp_path):
 def test_the_file_is_never_replaced(book, tmp_path):
     run = library.load(book(), functions=tmp_path / "my_functions.py").simulate(500)
     (tmp_path / "link.json").hardlink_to(tmp_path / "my_functions.py")
-    with pytest.raises(WorkbookError, match="this is the file that is read"):
+    with pytest.raises(WorkbookError, match="This is the file that is read"):
         run.save_json(tmp_path / "link.json", overwrite=True)
 
 
@@ -269,19 +269,19 @@ def test_a_bad_function_is_told_with_its_cell_and_name(xlmc, book, tmp_path, wor
     written(tmp_path / "bad.py", text)
     done = xlmc("simulate", "beam.xlsx", "--functions", "bad.py")
     assert (done.code, done.err.count("\n")) == (2, 1)
-    assert done.err.startswith(f"xlmc: Model!B2: the function BeamMoment of bad.py {message}") or message in done.err
-    assert "Model!B2: the function BeamMoment of bad.py" in done.err
+    assert done.err.startswith(f"xlmc: Model!B2: The function BeamMoment of bad.py {message}") or message in done.err
+    assert "Model!B2: The function BeamMoment of bad.py" in done.err
     assert all(each in done.err for each in more), done.err
 
 
 FILES = {
-    "no file": (None, "the file cannot be read"),
-    "no Python": ("def BeamMoment(a, b) return a", "the file is not Python: expected ':' (line 1)"),
+    "no file": (None, "The file cannot be read"),
+    "no Python": ("def BeamMoment(a, b) return a", "The file is not Python: expected ':' (line 1)"),
     "a module that is missing": (
         "import nothing_such\n",
         "ModuleNotFoundError: No module named 'nothing_such' (line 1)",
     ),
-    "no function": ("x = 3\n", "the file defines no function"),
+    "no function": ("x = 3\n", "The file defines no function"),
     "a function of Excel": ("def Sum(a): return a\n", "Sum is a function of Excel, which xlmc computes itself"),
     "another function of Excel": ("def Norm_Dist(a): return a\n", "Norm_Dist is a function of Excel"),
     "one name twice": ("def Ab(a): return a\ndef AB(a): return a\n", "Ab and AB are one name to Excel"),
@@ -323,6 +323,6 @@ def test_studies_and_scenarios_of_such_a_model(book, tmp_path):
 
 def test_unknown_functions_point_to_the_option(xlmc, book):
     book()
-    with pytest.raises(FormulaError, match="the function BEAMMOMENT is not known to xlmc"):
+    with pytest.raises(FormulaError, match="The function BEAMMOMENT is not known to xlmc"):
         library.load("beam.xlsx")
     assert "--functions my_functions.py" in xlmc("check", "beam.xlsx").err

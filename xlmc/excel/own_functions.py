@@ -460,7 +460,7 @@ def numbers_given(given: ArrayLike) -> NDArray[Any]:
         raise ValueError(f"gives no array of numbers ({error})") from error
     if found.dtype.kind not in "biuf":
         kinds = {"U": "texts", "S": "bytes", "M": "dates", "m": "spans of time", "c": "complex numbers"}
-        raise ValueError(f"gives {kinds.get(found.dtype.kind, 'objects')}, and no numbers")
+        raise ValueError(f"gives {kinds.get(found.dtype.kind, 'objects')} instead of real numbers")
     return found
 
 

@@ -11,7 +11,6 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
-from numbers import Real
 from pathlib import Path
 from typing import Any, Final, TypedDict
 
@@ -24,6 +23,7 @@ from xlmc.excel.formula import ir
 from xlmc.excel.functions.facts import Facts
 from xlmc.excel.functions.registry import Anything, Function, Kind
 from xlmc.excel.functions.values import Value, unbox_errors
+from xlmc.excel.own_functions import numbers_given
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.definitions.definitions import CUTOFFS
 from xlmc.montecarlo.definitions.definitions_reader import COMPUTED_BY
@@ -167,26 +167,12 @@ class _Body:
         """Return what the function gives as an array of numbers.
 
         Raises:
-            FormulaError: it is something else, which NumPy would make numbers of: complex numbers lose a part, masked
-                ones show what is behind the mask, texts and dates count something.
+            FormulaError: it is something else; see `numbers_given`.
         """
-        message, hint = f"{self.label} gives no numbers as {name!r}", "Give numbers or logicals"
-        if isinstance(given, np.ma.MaskedArray):
-            cure = "Give NaN where there is no number: result.filled(numpy.nan)"
-            raise FormulaError(f"{message}, but a masked array", hint=cure)
         try:
-            found = np.asarray(given)
-            if found.dtype.kind == "O" and all(isinstance(each, Real) for each in found.ravel()):
-                found = found.astype(np.float64)
-        except (TypeError, ValueError, OverflowError) as error:
-            raise FormulaError(f"{message}: {error}", hint=hint) from error
-        if found.dtype.kind == "c":
-            cure = "Give its real or imaginary part, or its absolute value"
-            raise FormulaError(f"{message}, but complex ones", hint=cure)
-        if found.dtype.kind not in "biuf":
-            what = {"U": "texts", "S": "bytes", "M": "dates", "m": "spans of time"}.get(found.dtype.kind, "objects")
-            raise FormulaError(f"{message}, but {what}", hint=hint)
-        return found.astype(np.float64)
+            return numbers_given(given).astype(np.float64)
+        except ValueError as error:
+            raise FormulaError(f"{self.label} {error}, as {name!r}", hint="Give numbers or logicals") from error
 
 
 def function_model(

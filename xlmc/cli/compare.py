@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.blocks import show
 from xlmc.cli.options import (
     FilePath,
     WholeNumber,
@@ -21,9 +20,7 @@ from xlmc.cli.options import (
     jobs_option,
     tolerance_option,
 )
-from xlmc.cli.study_output import STUDY, study_options
-from xlmc.cli.terminal import say_json
-from xlmc.cli.writing import write_files
+from xlmc.cli.study_output import STUDY, give_out, study_options
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison import Comparison, ForecastComparison
@@ -83,7 +80,6 @@ def compare(
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.diagnostics.directions import direction_notices
     from xlmc.montecarlo.model.loading import load
-    from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
     books = load(first, functions=functions), load(second, functions=functions)
@@ -104,12 +100,7 @@ def compare(
             tell=tell,
         )
     report = _report(found)
-    written = write_files(files.writers(report))
-    if as_json:
-        say_json(report.as_json())
-    else:
-        show(blocks_of([report.below, *report.blocks]))
-        written.print_paths()
+    written = give_out(report, files.writers(report), as_json, [report.below, *report.blocks])
     runs = list(zip(book_names(found), (found.first, found.second), strict=True))
     notices([replace(notice, where=name) for name, run in runs for notice in direction_notices(run.results.values())])
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]

@@ -9,11 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.blocks import show
 from xlmc.cli.options import FilePath, WholeNumber, engine_option, functions_option, jobs_option
-from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
-from xlmc.cli.terminal import say_json
-from xlmc.cli.writing import write_files
+from xlmc.cli.study_output import STUDY_OF_A_RUN, give_out, study_options
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.decisions import Decided
@@ -64,7 +61,6 @@ def decide(
     from xlmc.cli.printing import warnings
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
-    from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
@@ -73,12 +69,7 @@ def decide(
     with step_line(quiet) as tell:
         found = study.decide(model, table, trials=trials, seed=seed, engine=engine, jobs=jobs, tell=tell)
     report = _report(found)
-    written = write_files(files.writers(report))
-    if as_json:
-        say_json(report.as_json())
-    else:
-        show(blocks_of([f"{report.below}.", *report.blocks]))
-        written.print_paths()
+    written = give_out(report, files.writers(report), as_json, [f"{report.below}.", *report.blocks])
     doubts = [*found.run.warnings, *_doubts(found)]
     warnings(doubts, found.run.refused)
     written.check()

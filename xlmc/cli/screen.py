@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.blocks import show
 from xlmc.cli.options import (
     FilePath,
     WholeNumber,
@@ -20,9 +19,7 @@ from xlmc.cli.options import (
     jobs_option,
     tolerance_option,
 )
-from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
-from xlmc.cli.terminal import say_json
-from xlmc.cli.writing import write_files
+from xlmc.cli.study_output import STUDY_OF_A_RUN, give_out, study_options
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.screening import AtEnds, Cost, Screening
@@ -96,7 +93,6 @@ def screen(
     from xlmc.cli.printing import warnings
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
-    from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
@@ -118,12 +114,12 @@ def screen(
             tell=tell,
         )
     report = _report(found)
-    written = write_files(files.writers(report))
-    if as_json:
-        say_json(report.as_json())
-    else:
-        show(blocks_of([f"{report.below.partition(':')[0]}: what it could do without", *report.blocks]))
-        written.print_paths()
+    written = give_out(
+        report,
+        files.writers(report),
+        as_json,
+        [f"{report.below.partition(':')[0]}: what it could do without", *report.blocks],
+    )
     warnings(found.run.warnings, found.run.refused)
     written.check()
     if found.run.warnings:

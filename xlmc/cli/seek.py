@@ -9,11 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.blocks import show
 from xlmc.cli.options import FilePath, functions_option
-from xlmc.cli.study_output import STUDY, study_options
-from xlmc.cli.terminal import say_json
-from xlmc.cli.writing import write_files
+from xlmc.cli.study_output import STUDY, give_out, study_options
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.seek import Found
@@ -51,19 +48,13 @@ def seek(
 ) -> None:
     """Find the value of one cell of BOOK at which another has a given value, all else as it is in the workbook."""
     from xlmc.analysis.studies import seek as study
-    from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
     files = Files((*output, *also), [book], overwrite=overwrite)
     files.check()
     found = study.seek(book, cell, to, by, low=low, high=high, functions=functions)
     report = _report(found)
-    written = write_files(files.writers(report))
-    if as_json:
-        say_json(report.as_json())
-    else:
-        show(blocks_of([f"{report.below}.", *report.blocks]))
-        written.print_paths()
+    written = give_out(report, files.writers(report), as_json, [f"{report.below}.", *report.blocks])
     written.check()
     if not found.values.size:
         raise click.exceptions.Exit(NOT_FOUND)

@@ -2,23 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import click
 
+from xlmc.cli.blocks import show
 from xlmc.cli.output_options import with_files, with_options
+from xlmc.cli.terminal import say_json
+from xlmc.cli.writing import Written, write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison import Acceptance, Change, Difference
     from xlmc.montecarlo.statistics import Estimate
+    from xlmc.outputs.document.parts import Block
+    from xlmc.outputs.study_report import StudyReport
 
 STUDY = "a sheet (.xlsx), a document (.pdf, .docx), a page (.html), the result as JSON (.json)"
 STUDY_OF_A_RUN = f"{STUDY}, the accepted trials of the book's run (.csv, .parquet), that run (.xlmcrun)"
 
 Command = TypeVar("Command", bound=Callable[..., Any])
 
-__all__ = ["STUDY", "STUDY_OF_A_RUN", "acceptance_json", "difference_json", "estimate_json", "study_options"]
+__all__ = [
+    "STUDY",
+    "STUDY_OF_A_RUN",
+    "acceptance_json",
+    "difference_json",
+    "estimate_json",
+    "give_out",
+    "study_options",
+]
 
 
 def study_options(kinds: str) -> Callable[[Command], Command]:
@@ -36,6 +50,31 @@ def study_options(kinds: str) -> Callable[[Command], Command]:
         return with_files(text, ("html", "pdf", "docx"))(with_options(overwrite)(command))
 
     return add
+
+
+def give_out(
+    report: StudyReport, files: Iterable[tuple[Path, Callable[[], Path]]], as_json: bool, said: Iterable[Block | str]
+) -> Written:
+    """Write the files of a study, then print its result as JSON, or what it says and where the files are.
+
+    Args:
+        report: of the study.
+        files: what to write, and how.
+        as_json: print the result as JSON.
+        said: what else is printed, in order.
+
+    Returns:
+        What was written; what failed is to be raised after the warnings (`Written.check`).
+    """
+    from xlmc.outputs.document.parts import blocks_of
+
+    written = write_files(files)
+    if as_json:
+        say_json(report.as_json())
+    else:
+        show(blocks_of(said))
+        written.print_paths()
+    return written
 
 
 def estimate_json(estimate: Estimate) -> dict[str, float | None]:

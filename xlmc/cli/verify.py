@@ -8,11 +8,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.blocks import show
 from xlmc.cli.options import FilePath, functions_option
-from xlmc.cli.study_output import STUDY, study_options
-from xlmc.cli.terminal import plain, say_json
-from xlmc.cli.writing import write_files
+from xlmc.cli.study_output import STUDY, give_out, study_options
+from xlmc.cli.terminal import plain
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.verify import CellCheck, Verification
@@ -66,12 +64,7 @@ def verify(
         "Verification",
         partial(_as_json, found),
     )
-    written = write_files(files.writers(report))
-    if as_json:
-        say_json(report.as_json())
-    else:
-        show(blocks_of(_blocks(found, _SHOWN)))
-        written.print_paths()
+    written = give_out(report, files.writers(report), as_json, _blocks(found, _SHOWN))
     written.check()
     if found.count(Status.DIFFERING):
         raise click.exceptions.Exit(DIFFERS)

@@ -599,7 +599,7 @@ _CHECKS = checks_section(
         "Tests of sheet Stiffness are complete and leave crush",
         "AND(tests_begun=10*(tests_1+tests_2),tests_low<>-1,OR(N(line_1)<>1,lined_1=1),OR(N(line_2)<>1,lined_2=1))",
         "published tests",
-        "FALSE: a row lacks a number or says neither vehicle 1 nor 2; a speed is not above b0; or a line needs three "
+        "FALSE: a row lacks a number or names no vehicle by 1 or 2; a speed is not above b0; or a line needs three "
         "tests whose crush differs.",
     ),
     check(

@@ -102,7 +102,7 @@ def test_a_run_in_which_nothing_varies_is_named(xlmc, failing, tmp_path):
         )
     sheet["C3"], sheet["D3"], sheet["D13"] = 0.5, 2, "=B2*2"
     book.save(path)
-    assert "the forecast 'q' does not vary" in xlmc("check", path).err
+    assert "The forecast 'q' does not vary" in xlmc("check", path).err
 
 
 def test_a_failing_example_is_not_passed_over(xlmc, case_study):

@@ -111,7 +111,11 @@ def test_what_cannot_be_written_is_refused_before_anything_is_run(xlmc, command,
         (["-o", book], "This is the file that is read"),
         (["-o", tmp_path / "found.txt"], "This command writes no file that ends in .txt"),
         (["-o", tmp_path / "found.xlsm"], "This command writes no file that ends in .xlsm"),
-        *([] if command[0] not in NO_RUN else [(["-o", tmp_path / "found.csv"], "the ending .csv is none")]),
+        *(
+            []
+            if command[0] not in NO_RUN
+            else [(["-o", tmp_path / "found.csv"], "This command writes no file that ends in .csv")]
+        ),
         (["--html", tmp_path / "found.xlsx"], "must end in .html"),
         (["--html", tmp_path / "nowhere" / "found.html"], "nowhere"),
         (["--pdf", tmp_path / "found.docx"], "must end in .pdf"),

@@ -68,13 +68,13 @@ def find_roots(function: Function, low: Floats, high: Floats) -> Roots:
     """Find where a function is 0.
 
     Args:
-        function: of the unknown and the trial.
+        function: of the unknown and the trials, which are None where all are meant.
         low: `(n,)` the lower end of each trial's range; NaN for a trial without one.
         high: `(n,)` the upper end; a trial whose ends are in the other order has no root.
 
-    >>> found = find_roots(lambda x, trial: x * x - trial - 1.0, np.zeros(3), np.full(3, 9.0))
-    >>> found.values.round(12).tolist()
-    [1.0, 1.414213562373, 1.732050807569]
+    >>> found = find_roots(lambda x, trial: x * x - 2.0, np.zeros(3), np.array([1.0, 2.0, 9.0]))
+    >>> found.trials.tolist(), found.values.round(12).tolist()
+    ([1, 2], [1.414213562373, 1.414213562373])
     """
     with np.errstate(all="ignore"):
         known = np.isfinite(low) & np.isfinite(high) & (low <= high)

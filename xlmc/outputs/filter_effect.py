@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import TYPE_CHECKING, Final
+from typing import TYPE_CHECKING, Any, Final
 from weakref import WeakKeyDictionary
 
 import numpy as np
@@ -119,12 +119,18 @@ def shapes(
     low, high = _shown(before)
     if not (math.isfinite(high - low) and high > low):
         return None
-    counted, edges = np.histogram(before, _BINS, (low, high))  # by a division: edges given would sort the draws
-    if w is None:
-        shares = np.histogram(after, _BINS, (low, high))[0] / after.size
-    else:
-        shares = np.histogram(after, edges, weights=w)[0] / w.sum()
-    return Shapes(edges, counted / before.size, shares)
+    edges = np.linspace(low, high, _BINS + 1)
+    shares = _counts(after, edges) / after.size if w is None else np.histogram(after, edges, weights=w)[0] / w.sum()
+    return Shapes(edges, _counts(before, edges) / before.size, shares)
+
+
+def _counts(draws: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[np.int64]:
+    """Count draws in equal bins, by a division; given edges, NumPy would sort the draws.
+
+    Bins that are no wider than the last digit of a number have to be given.
+    """
+    bins: Any = edges.size - 1 if (np.diff(edges) > 0.0).all() else edges
+    return np.asarray(np.histogram(draws, bins, (edges[0], edges[-1]))[0])
 
 
 def _shown(draws: NDArray[np.float64]) -> tuple[float, float]:

@@ -136,7 +136,7 @@ def test_mistakes_are_named_with_their_cell(book, row, message, where):
 
 def test_what_cannot_be_asked_is_refused(book, tmp_path):
     model = xlmc.load(book())
-    with pytest.raises(SimulationError, match="no decision has the name 'Size'"):
+    with pytest.raises(SimulationError, match="No decision has the name 'Size'"):
         xlmc.decide(model, ["Size"])
     many = xlmc.load(book(["Order", "=Inputs!B5", 1, 999, 1, None, None], PRICE))
     with pytest.raises(SimulationError, match="1,998 combinations"):

@@ -39,8 +39,8 @@ def test_faults_are_collected_and_the_rest_is_worked_out(tolerant):
     faults = {cell.a1: error.message for cell, error in graph.faults.items()}
     assert faults == {
         "B2": "the formula cannot be read from the marked character on",
-        "B3": "There is no sheet 'Nothing'",
-        "C3": "There is no name 'Rte'",
+        "B3": "there is no sheet 'Nothing'",
+        "C3": "there is no name 'Rte'",
         "C4": "the formula refers to another workbook",
     }
     assert [cell.a1 for cell in graph.formulas] == ["B1", "B2", "C1", "B3", "C2", "C3", "C4"]

@@ -161,7 +161,7 @@ TABLE = {
 def test_tables(resolved, table, text):
     tables = [table("T", "S!A1:C5", "Low", "High", "Std dev", totals_rows=1)]
     if TABLE[text] is None:
-        with pytest.raises(FormulaError, match="there is no name 'T'"):
+        with pytest.raises(FormulaError, match="There is no name 'T'"):
             resolved(text, at="S!E3", tables=tables)
     else:
         assert resolved(text, at="S!E3", tables=tables) == TABLE[text]

@@ -152,9 +152,9 @@ def test_a_faulty_formula_leaves_nothing_behind(workbook, shown, broken):
     cell = Cell("S", 1, 2)
     resolver = Resolver(workbook({}, names={"v": "S!$Z$1", "Broken": "LET(w,1,w+nothing)", "Loop": "Broken"}))
     for _ in range(3):
-        with pytest.raises(FormulaError, match="there is no name 'nothing'"):
+        with pytest.raises(FormulaError, match="There is no name 'nothing'"):
             resolver.formula(cell, Formula(broken, 1, 2))
     assert shown(resolver.formula(cell, Formula("-" * 190 + "v", 1, 2))).count("-") == 190
     assert shown(resolver.formula(cell, Formula("v+A1", 1, 2))) == "(+ S!Z1 S!A1)"
-    with pytest.raises(FormulaError, match="there is no name 'nothing'"):  # and not a name that is still open
+    with pytest.raises(FormulaError, match="There is no name 'nothing'"):  # and not a name that is still open
         resolver.formula(cell, Formula("Loop", 1, 2))

@@ -66,7 +66,7 @@ def test_sheets_that_mention_a_word_are_found_without_parsing(book):
 
 @pytest.mark.parametrize(("where", "message"), [(None, "book.xlsx"), ("Sheet1!B7", "Sheet1!B7")])
 def test_a_complaint_without_a_place_gets_the_file(where, message):
-    with pytest.raises(WorkbookError, match="what is wrong") as caught, naming_file("book.xlsx"):
+    with pytest.raises(WorkbookError, match="What is wrong") as caught, naming_file("book.xlsx"):
         raise WorkbookError("what is wrong", where=where, hint="what to do")
     assert (caught.value.where, caught.value.hint) == (message, "what to do")
 

@@ -169,7 +169,7 @@ BROKEN = """<sheetNames><sheetName val="Prices"/><sheetName val="Whole"/></sheet
 )
 def test_a_sheet_that_excel_could_not_read_again_is_an_error(linked, formula, expected):
     found = linked(row_of(formula), BROKEN)
-    assert any("links to prices.xlsx are broken" in str(notice) for notice in found.notices)
+    assert any("Links to prices.xlsx are broken" in str(notice) for notice in found.notices)
     (compared,) = verify(found).cells
     assert compared.got == expected
 

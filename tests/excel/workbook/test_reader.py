@@ -103,7 +103,7 @@ def test_a_file_that_is_not_there(tmp_path):
 
 
 def test_a_folder(tmp_path):
-    with pytest.raises(WorkbookError, match="this is a folder"):
+    with pytest.raises(WorkbookError, match="This is a folder"):
         read_workbook(tmp_path)
 
 
@@ -112,7 +112,7 @@ def test_a_file_of_another_person(tmp_path, monkeypatch):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr("pathlib.Path.open", refuse)  # whoever runs the tests may be allowed to read everything
-    with pytest.raises(WorkbookError, match="the file may not be read"):
+    with pytest.raises(WorkbookError, match="The file may not be read"):
         read_workbook(tmp_path / "locked.xlsx")
 
 
@@ -193,7 +193,7 @@ def messages(book):
     ("settings", "message"),
     [
         ('fullPrecision="0"', "book.xlsx: Excel calculates this workbook with precision as displayed"),
-        ('calcMode="manual"', "book.xlsx: calculation is set to manual"),
+        ('calcMode="manual"', "book.xlsx: Calculation is set to manual"),
     ],
 )
 def test_calculation(book, settings, message):

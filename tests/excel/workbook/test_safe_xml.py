@@ -10,11 +10,17 @@ def by_feed(xml, part):
 
 LAUGHS = b"""<!DOCTYPE lolz [<!ENTITY a "ha"><!ENTITY b "&a;&a;&a;&a;"><!ENTITY c "&b;&b;&b;&b;">]><x>&c;</x>"""
 REFUSED = {
-    "entities": (LAUGHS, "declares a document type or entities"),
-    "a document type": (b"<!DOCTYPE x><x/>", "declares a document type"),
-    "a file": (b'<!DOCTYPE x [<!ENTITY f SYSTEM "file:///etc/hostname">]><x>&f;</x>', "declares a document type"),
-    "a document type in UTF-16": ("<!DOCTYPE x><x/>".encode("utf-16"), "declares a document type"),
-    "a late document type": (b"<!--" + b" " * 100_000 + b"--><!DOCTYPE x><x/>", "declares a document type"),
+    "entities": (LAUGHS, "A document type or entities are declared"),
+    "a document type": (b"<!DOCTYPE x><x/>", "A document type or entities are declared"),
+    "a file": (
+        b'<!DOCTYPE x [<!ENTITY f SYSTEM "file:///etc/hostname">]><x>&f;</x>',
+        "A document type or entities are declared",
+    ),
+    "a document type in UTF-16": ("<!DOCTYPE x><x/>".encode("utf-16"), "A document type or entities are declared"),
+    "a late document type": (
+        b"<!--" + b" " * 100_000 + b"--><!DOCTYPE x><x/>",
+        "A document type or entities are declared",
+    ),
     "an unknown entity": (b"<x>&f;</x>", "not well-formed XML .*undefined entity"),
     "an open element": (b"<x><y></x>", "not well-formed XML .*mismatched tag"),
     "an end too early": (b"<x><y>", "not well-formed XML .*no element found"),

@@ -205,10 +205,10 @@ def test_complaints_name_the_cell(cell, message):
         ('<row r="-1"/>', "has the number '-1'"),
         (
             '<row r="1"><c r="A1"><f t="array">B1</f></c></row>',
-            "an array formula of sheet 'My sheet' has no valid range",
+            "An array formula of sheet 'My sheet' has no valid range",
         ),
-        ('<row r="1"><c r="A1"><f t="dataTable"/></c></row>', "a data table of sheet 'My sheet' has no valid range"),
-        ('<mergeCell ref="A1:ZZZ9"/>', "a merged cell of sheet 'My sheet' has no valid range"),
+        ('<row r="1"><c r="A1"><f t="dataTable"/></c></row>', "A data table of sheet 'My sheet' has no valid range"),
+        ('<mergeCell ref="A1:ZZZ9"/>', "A merged cell of sheet 'My sheet' has no valid range"),
         ("<row>", "is not well-formed XML"),
     ],
 )
@@ -220,7 +220,7 @@ def test_other_complaints_name_the_sheet_or_part(content, message):
 
 
 def test_a_document_type_is_refused():
-    with pytest.raises(WorkbookError, match="declares a document type"):
+    with pytest.raises(WorkbookError, match="A document type or entities are declared"):
         parse_sheet(b"<!DOCTYPE worksheet><worksheet/>", ENTRY, CONTEXT)
 
 

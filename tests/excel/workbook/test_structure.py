@@ -216,5 +216,5 @@ def test_area_of(reference, corners):
 
 @pytest.mark.parametrize("reference", [None, "", "A:B", "A0", "#REF!"])
 def test_complaint(reference):
-    with pytest.raises(WorkbookError, match="a thing of sheet 'S' has no valid range"):
+    with pytest.raises(WorkbookError, match="A thing of sheet 'S' has no valid range"):
         area_of(reference, "S", "a thing")

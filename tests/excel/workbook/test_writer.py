@@ -137,7 +137,7 @@ def test_a_file_in_place_of_the_folder_is_no_folder(tmp_path):
 
 def test_a_folder_is_not_overwritten(tmp_path):
     (tmp_path / "book.xlsx").mkdir()
-    with pytest.raises(WorkbookError, match="this is a folder"):
+    with pytest.raises(WorkbookError, match="This is a folder"):
         write_workbook(tmp_path / "book.xlsx", b"")
     assert [path.name for path in tmp_path.iterdir()] == ["book.xlsx"]
 
@@ -207,7 +207,7 @@ def test_a_file_that_is_held_for_long_stays_and_is_told_of(tmp_path, monkeypatch
     path.write_bytes(b"old")
     monkeypatch.setattr("time.sleep", lambda _: None)
     monkeypatch.setattr(os, "replace", held(32, 100, os.replace))
-    with pytest.raises(writer.TakenError, match=r"another program holds the file\. Close it in Excel") as caught:
+    with pytest.raises(writer.TakenError, match=r"Another program holds the file\. Close it in Excel") as caught:
         write_workbook(path, b"new")
     assert caught.value.where == str(path)
     assert [(left.name, left.read_bytes()) for left in tmp_path.iterdir()] == [("book.xlsx", b"old")]

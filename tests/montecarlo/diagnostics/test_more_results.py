@@ -75,10 +75,10 @@ OF_TRIALS = {
     "RiskMean(A3)-RiskTheoMean(A1)": lambda x, y: x.mean() - 5,
 }
 MISSING = {
-    "RiskTheoMean(A7)": "RiskTheoMean: This number of the distribution is infinite, or there is none",
+    "RiskTheoMean(A7)": "RiskTheoMean: this number of the distribution is infinite, or there is none",
     "RiskTheoMean(A8)": "RiskTheoMean needs a distribution whose parameters are numbers",
     "RiskTheoMean(A3)": "RiskTheoMean needs one distribution whose numbers are known",
-    "RiskTheoPtoX(A1,1.5)": "RiskTheoPtoX: A probability must be from 0 to 1",
+    "RiskTheoPtoX(A1,1.5)": "RiskTheoPtoX: a probability must be from 0 to 1",
     "RiskTheoMean(A1,1)": "RiskTheoMean has 2 arguments",
     "RiskTheoXtoP(RiskCompound(RiskPoisson(5),RiskExpon(2)),5)": "RiskTheoXtoP of RiskCompound has no formula",
     "RiskSensitivity(A3,1)": "RiskSensitivity is not computed by xlmc",

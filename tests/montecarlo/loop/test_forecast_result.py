@@ -22,6 +22,6 @@ def long_tailed():
 def test_a_number_whose_interval_may_be_too_short_is_not_said_to_vary_less(long_tailed):
     assert set(too_short(long_tailed)) & set(errors_from_trials(long_tailed))
     short, plain = [each.message for each in interval_notices({"x": long_tailed}, "Latin hypercube")]
-    assert "the interval of the standard deviation of 'x' may be too short" in short
-    assert "the error of the mean of 'x' is that of independent trials" in plain
+    assert "The interval of the standard deviation of 'x' may be too short" in short
+    assert "The error of the mean of 'x' is that of independent trials" in plain
     assert "standard deviation" not in plain

@@ -247,7 +247,7 @@ def test_what_is_refused_stays_refused_when_another_program_drops_the_blocks(tmp
     assert "this answer is missing, and the others do not need it" in " ".join(reported.stderr.split())
     assert "must not be used" not in reported.stderr
     text = openpyxl.load_workbook(new.with_stem(f"{new.stem}-results"))["Results"]["A3"].value
-    assert text.startswith("An answer is missing: the forecast 'With odd' needs Sheet1!B4")
+    assert text.startswith("An answer is missing: The forecast 'With odd' needs Sheet1!B4")
     assert text.endswith("The answers of other forecasts do not need it.")
 
 
@@ -344,6 +344,6 @@ def test_the_workbook_itself_is_not_replaced_by_whatever_name(tmp_path):
     (tmp_path / "link.xlsx").symlink_to(path)
     before, model = path.read_bytes(), load(path)
     for name in ("book.xlsx", "link.xlsx"):
-        with pytest.raises(WorkbookError, match="this is the file that is read"):
+        with pytest.raises(WorkbookError, match="This is the file that is read"):
             convert(model, tmp_path / name, overwrite=True)
     assert path.read_bytes() == before

@@ -192,7 +192,7 @@ def test_a_warning_that_was_taken_off_the_record_is_named(tmp_path, edited, smal
 @pytest.mark.parametrize("key", ["counts.accepted", "file.name", "end.by", "counts", "end"])
 def test_a_record_that_lacks_an_entry_is_refused_by_name(typed, in_record, key):
     book = typed({("Record", in_record(key), 1): f"{key}x"})
-    with pytest.raises(WorkbookError, match=f"the record lacks '{key}.*It was edited"):
+    with pytest.raises(WorkbookError, match=f"The record lacks '{key}.*It was edited"):
         replay(book)
 
 

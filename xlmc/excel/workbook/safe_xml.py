@@ -13,7 +13,7 @@ from typing import NoReturn
 from xml.etree import ElementTree
 from xml.parsers import expat
 
-from xlmc.errors import WorkbookError
+from xlmc.errors import WorkbookError, capitalised
 
 __all__ = [
     "REPAIR",
@@ -95,7 +95,7 @@ class _Builder(ElementTree.TreeBuilder):
 
 
 def _refuse(*_: object) -> NoReturn:
-    raise WorkbookError("a document type or entities are declared, which no workbook needs")
+    raise WorkbookError("A document type or entities are declared, which no workbook needs")
 
 
 @contextmanager
@@ -105,7 +105,7 @@ def _naming_part(part: str) -> Iterator[None]:
     except WorkbookError as error:
         if error.where is not None:
             raise
-        raise WorkbookError(f"{part}: {error.message}", hint=error.hint or REPAIR) from None
+        raise WorkbookError(f"{part}: {capitalised(error.message)}", hint=error.hint or REPAIR) from None
     except _NOT_XML as error:
         raise WorkbookError(f"{part} is not well-formed XML ({error})", hint=REPAIR) from error
 

@@ -75,7 +75,7 @@ class SamplingPlan:
             ValueError: there is no such method.
 
         >>> SamplingPlan.of("sobol", 200_000)
-        SamplingPlan(method='sobol', trials=204800, size=8192, order=())
+        SamplingPlan(method='sobol', trials=204800, size=8192, order=(), outer=frozenset())
         >>> SamplingPlan.of("lhs", 200_000).replicates
         16
         """

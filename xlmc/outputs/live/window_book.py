@@ -177,7 +177,7 @@ def _shape(values: NDArray[np.float64]) -> dict[str, Any] | None:
         first, last = float(middle[0]), float(middle[-1])
     if not last > first:
         return {"low": first, "high": last, "heights": [1.0]}
-    counts, _ = np.histogram(finite_draws, _SHAPE_BARS, (first, last))
+    counts, _ = np.histogram(finite_draws, np.linspace(first, last, _SHAPE_BARS + 1))
     return {"low": first, "high": last, "heights": [round(float(h), 3) for h in counts / counts.max()]}
 
 

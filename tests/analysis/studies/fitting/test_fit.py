@@ -134,8 +134,8 @@ def test_what_cannot_be_fitted_says_why():
 @pytest.mark.parametrize(
     ("values", "kind", "message", "hint"),
     [
-        ([], None, "There is no value to fit", "One measurement justifies a uniform range only"),
-        ([0.7], None, "There is one value to fit", "One measurement justifies a uniform range only"),
+        ([], None, "there is no value to fit", "One measurement justifies a uniform range only"),
+        ([0.7], None, "there is one value to fit", "One measurement justifies a uniform range only"),
         ([0.7, 0.7, 0.7], None, "all 3 values are equal", "say nothing of the spread"),
         ([0.7, np.nan], None, "a value is not a finite number", "Correct it"),
         ([0.7, 0.8], "counts", "not every value is a whole number from 0 up", "continuous"),

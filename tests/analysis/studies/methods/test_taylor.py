@@ -83,7 +83,7 @@ def test_a_distribution_without_a_mean_is_refused(book):
         {"a": {"cell": "A1", "distribution": "Pareto", "location": 1, "shape": 1}},
         {"f": "B1"},
     )
-    with pytest.raises(SimulationError, match="a has no finite mean"):
+    with pytest.raises(SimulationError, match="'a' has no finite mean"):
         FirstOrder().run(model, 0, 1)
 
 

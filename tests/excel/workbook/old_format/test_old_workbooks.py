@@ -280,4 +280,4 @@ def test_how_excel_calculates_is_told(monkeypatch):
     data = plain_book({"S": record(0x0D, b"\0\0")}, before=record(0x0E, b"\0\0"))
     notices = [each.message for each in read_workbook(data, "case.xls").notices]
     assert any("precision as displayed" in each for each in notices)
-    assert any("calculation is set to manual" in each for each in notices)
+    assert any("Calculation is set to manual" in each for each in notices)

@@ -189,7 +189,7 @@ def test_the_range_of_a_certainty_is_a_threshold(read):
 
 def test_decision_variables_keep_their_values_and_are_named_once(read):
     found = read(SKID, TOTAL, Decided(S, "$B$3", "Share"))
-    (sentence,) = [notice for notice in found.notices if "decision" in notice.message]
+    (sentence,) = [notice for notice in found.notices if "Decision" in notice.message]
     assert "'Share' (Sheet1!B3)" in sentence.message
 
 

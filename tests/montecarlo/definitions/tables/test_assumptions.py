@@ -51,7 +51,7 @@ MISTAKES = [
     ({"Inputs!F2": 6700}, "Inputs!F2", "Uniform has no Likeliest", "Clear the cell"),
     ({"Inputs!D4": 0}, "Inputs!D4", "Normal has no Low", "use Lower cutoff and Upper cutoff"),
     ({"Inputs!P1": "Scale", "Inputs!P3": 2}, "Inputs!P3", "Uniform has no Scale", "Clear the cell"),
-    ({"Inputs!P1": "P90", "Inputs!P3": 2}, "Inputs!P3", "Uniform has no P90", "Clear the cell"),
+    ({"Inputs!P1": "P90", "Inputs!P3": 2}, "Inputs!P3", "Uniform leaves no parameter blank", "one percentile for each"),
     ({"Inputs!P1": "Data", "Inputs!P3": "=Q1:Q9"}, "Inputs!P3", "Uniform has no Data", "Clear the cell"),
     ({"Inputs!P1": "Min", "Inputs!P3": 2}, "Inputs!P3", "Low is given twice, as Low and as Min", "Clear one of them"),
     ({"Inputs!D2": "6,661"}, "Inputs!D2", "Low holds the text '6,661', not a number", "Type it again as a number"),

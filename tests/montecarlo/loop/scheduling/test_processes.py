@@ -182,7 +182,7 @@ def test_one_that_rested_is_told_of_if_it_dies_as_its_run_begins(children):
     children[-1].wait()
     assert not one.alive
     one.begin(b"", answers)
-    with pytest.raises(SimulationError, match="ended before its time"):
+    with pytest.raises(SimulationError, match="ended unexpectedly"):
         one.answered(answers.get(timeout=120)[1])
     one.end()
 
@@ -193,7 +193,7 @@ def test_a_process_that_dies_is_told(model, children):
     blocks = by_processes(runner, runner, 1, 10**7, tasks)
     next(blocks)
     os.kill(children[0].pid, signal.SIGTERM)
-    with pytest.raises(SimulationError, match="a process ended before its time"):
+    with pytest.raises(SimulationError, match="A worker process ended unexpectedly"):
         for _ in blocks:
             pass
     assert all(one.returncode is not None for one in children)

@@ -34,11 +34,13 @@ def test_the_same_run_has_the_same_run_spec(model):
 def test_other_software_is_refused(model, monkeypatch, name):
     packed = RunSpec.of(model, "numpy", 7, 100).pack()
     monkeypatch.setattr("xlmc.montecarlo.loop.scheduling.run_spec.software", lambda: software() | {name: "0.0.1"})
-    with pytest.raises(SimulationError, match=f"this worker: {name} is 0.0.1 there and ") as caught:
+    with pytest.raises(
+        SimulationError, match=f"this worker: The software differs: {name} is 0.0.1 there and "
+    ) as caught:
         unpack(packed)
     assert "same software" in caught.value.hint
 
 
 def test_missing_software_is_refused():
-    with pytest.raises(SimulationError, match="worker 3: numpy is missing there and 2 here"):
+    with pytest.raises(SimulationError, match="worker 3: The software differs: numpy is missing there and 2 here"):
         check_software({"numpy": "2"}, {}, "worker 3")

@@ -137,7 +137,7 @@ def test_it_may_not_be_reached(model):
     [
         ({"until_rejected": 0}, "0 rejected trials were asked for"),
         ({"until_rejected": 1.5}, "1.5 rejected trials were asked for"),
-        ({"until_rejected": 5, "precision": "1%"}, "a precision and rejected trials were both asked for"),
+        ({"until_rejected": 5, "precision": "1%"}, "A precision and rejected trials were both asked for"),
         ({"until_rejected": 5, "forecasts": "area"}, "orecasts are named, and no precision or stable digits"),
         ({"until_rejected": 5, "sampling": "lhs"}, "A run with lhs sampling cannot end before"),
     ],

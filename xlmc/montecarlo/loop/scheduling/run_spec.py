@@ -120,5 +120,5 @@ def check_software(ours: Mapping[str, str], theirs: Mapping[str, str], where: st
         found = theirs.get(name)
         if found != wanted:
             hint = "Results would depend on which worker ran which trials: use the same software on all"
-            message = f"{name} is {found or 'missing'} there and {wanted} here"
+            message = f"the software differs: {name} is {found or 'missing'} there and {wanted} here"
             raise SimulationError(message, where=where, hint=hint)

@@ -116,6 +116,21 @@ def test_different_ranges_are_told_apart(make):
     assert range_heading(summarise(run)) == "Central range"
 
 
+def test_a_range_of_yes_and_no_is_no_different_one(make):
+    """A yes/no has no range, so that what its row asks for is not told beside those of numbers."""
+    cells = {"A1": 0.5, "B1": "=A1>0.3"}
+    drawn = [make.uniform("a", "A1", 0.0, 1.0, base=0.5)]
+    both = [make.forecast("x", "A1", central=0.95), make.forecast("late", "B1")]
+    run = make.simulate(cells, drawn, both)
+    headings, lines = summary_text(summarise(run))
+    assert "95 % range" in headings
+    assert "Range" not in headings
+    assert lines[1][headings.index("95 % range")] == ""
+    three = make.simulate({**cells, "C1": "=A1"}, drawn, [*both, make.forecast("z", "C1", central=0.8)])
+    headings, lines = summary_text(summarise(three))
+    assert [line[headings.index("Range")] for line in lines] == ["95 %", "", "80 %"]
+
+
 @pytest.mark.parametrize(
     ("share", "text"), [(0.51, "51 %"), (0.245, "24.5 %"), ((1 - 0.51) / 2, "24.5 %"), (1.0, "100 %")]
 )

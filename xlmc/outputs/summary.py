@@ -189,7 +189,7 @@ def _line(row: SummaryRow, heading: str) -> dict[str, str]:
         "Mean": answer_text(row),
         "SD": row.form.spread(spread),
         heading: "" if math.isnan(low.value) else central_text(row),
-        "Range": "" if heading != MIXED else percent(row.share),
+        "Range": "" if heading != MIXED or math.isnan(low.value) else percent(row.share),
         "Base case": base_text(row),
         "Threshold": threshold,
         "Above threshold": "" if row.above is None else share_text(row.above),
@@ -237,8 +237,8 @@ def beside_mean(value: float, row: SummaryRow) -> str:
 
 
 def range_heading(rows: Sequence[SummaryRow]) -> str:
-    """`51 % range`, or `Central range` where forecasts have different ones."""
-    shares = {row.share for row in rows}
+    """`51 % range`, or `Central range` where forecasts have different ones; yes/no answers and texts have none."""
+    shares = {row.share for row in rows if not row.is_share}
     return f"{percent(shares.pop())} range" if len(shares) == 1 else MIXED
 
 

@@ -46,6 +46,21 @@ def test_the_terminal_says_which_is_best_and_by_how_much(xlmc, book):
     assert "these trials cannot tell the two apart" in words  # 20 and 60 are equally bad
 
 
+def test_a_yes_or_no_has_a_probability(xlmc, tmp_path):
+    path = tmp_path / "book.xlsx"
+    sheets = {
+        "Model": [[50], [40], ["=A1<=A2"]],
+        "A": [["Name", "Cell", "Low", "High"], ["demand", "=Model!A1", 0, 100]],
+        "F": [["Name", "Cell"], ["enough", "=Model!A3"]],
+        "D": [["Name", "Cell", "Values"], ["order", "=Model!A2", "20; 80"]],
+    }
+    tables = {"xlmc_assumptions": "A!A1:D2", "xlmc_forecasts": "F!A1:B2", "xlmc_decisions": "D!A1:C2"}
+    workbook_of(sheets, tables).save(path)
+    outcome = xlmc("decide", path, "-n", "2000")
+    assert outcome.code == 0, outcome.err
+    assert "The probability of enough is largest" in outcome.out
+
+
 def test_files_have_the_table_and_the_trend(xlmc, book, tmp_path):
     sheet, page, found = tmp_path / "found.xlsx", tmp_path / "found.html", tmp_path / "found.json"
     given = ["decide", book, "-n", "2000", "--quiet"]

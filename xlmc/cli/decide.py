@@ -122,10 +122,12 @@ def _sentences(found: Decided) -> Iterator[str]:
             if best is None:
                 yield f"{forecast.name} is a number with none of them."
                 break
-            form = of_forecast(found.base, forecast.name).form
+            answer = of_forecast(found.base, forecast.name)
+            share = "probability" if answer.text is None else f"share of “{answer.text}”"
+            form, what = answer.form, "mean" if answer.has_range else share
             units = f" {forecast.units}" if forecast.units else ""
             mean = f"{form.estimate(best.mean)}{units}"
-            text = f"The mean of {forecast.name} is {word}, {mean}, with {best.combination.answers.name}"
+            text = f"The {what} of {forecast.name} is {word}, {mean}, with {best.combination.answers.name}"
             if best.next is None or best.ahead is None:
                 yield f"{text}."
                 break

@@ -75,11 +75,14 @@ def _blocks(found: Found) -> Iterator[str | Block]:
     from xlmc.outputs.document.parts import Chart, Figure, Line, Lines, Table
 
     span = f"from {number_text(found.low)} to {number_text(found.high)}"
+    for low, high in found.throughout:
+        between = f"from {number_text(low, 6)} to {number_text(high, 6)}"
+        yield f"{found.cell} is {exact_text(found.to)} wherever {found.by} is {between}, as finely as was looked."
     if not found.values.size:
         yield f"No value of {found.by} {span} makes {found.cell} equal to {exact_text(found.to)}."
     elif found.values.size == 1:
         yield f"{found.cell} is {exact_text(found.to)} where {found.by} is {number_text(found.values[0], 12)}."
-    else:
+    elif found.values.size > 2 * len(found.throughout):
         many = f"{found.values.size} values of {found.by} {span}"
         yield f"{many} make {found.cell} equal to {exact_text(found.to)}."
     base = [] if found.base is None else [("In the workbook", found.base, found.base_answer)]
@@ -106,6 +109,7 @@ def _as_json(found: Found) -> dict[str, object]:
         "by": str(found.by),
         "low": found.low,
         "high": found.high,
+        "throughout": [list(ends) for ends in found.throughout],
         "base": {"by": found.base, "cell": found.base_answer},
         "values": [
             {"by": value, "cell": finite(answer)}

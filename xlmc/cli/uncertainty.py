@@ -136,9 +136,13 @@ def _subject(each: ForecastBands, band: Band) -> str:
 
 
 def _ends(each: ForecastBands, band: Band) -> str:
-    """`41.2 and 47.9 mph`, both in the digits that the larger of their errors supports."""
-    decimals = band.form.decimals_of_both(band.low, band.high)
-    ends = " and ".join(band.form.number(end.value, decimals) for end in (band.low, band.high))
+    """`41.2 and 47.9 mph`, both in the digits that the larger of their errors supports; as the table without errors."""
+    both = (band.low, band.high)
+    decimals = band.form.decimals_of_both(*both)
+    if any(end.error is None for end in both):
+        ends = " and ".join(band.form.beside(end.value, band.pooled) for end in both)
+    else:
+        ends = " and ".join(band.form.number(end.value, decimals) for end in both)
     units = f" {each.definition.units}" if each.definition.units and not band.is_share else ""
     return f"{ends}{units}"
 

@@ -21,7 +21,7 @@ def book(tmp_path):
         ["root", "=SQRT(B1-2)-1"],
         ["z", None],
     ]
-    rows.append(["of z", "=B6*2+1"])
+    rows += [["of z", "=B6*2+1"], ["whole", "=ROUND(B1,0)"], ["is above", "=B1>1.5"]]
     path = tmp_path / "plain.xlsx"
     workbook_of({"Model": rows, "Other sheet": [["=Model!B3"]]}, {}).save(path)
     return path
@@ -48,6 +48,23 @@ def test_values_are_those_of_the_closed_form(book, cell, to, by, ends, values):
     assert found.values == pytest.approx(values, rel=1e-13)
     assert found.value == pytest.approx(values[0], rel=1e-13) if values else found.value is None
     assert found.answers == pytest.approx([to] * len(values), rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("cell", "to", "low", "high", "flat"),
+    [
+        ("Model!B8", 5, 0, 10, [(4.5, 5.5)]),
+        ("Model!B9", 1, 0, 10, [(1.5, 10)]),
+        ("Model!B9", 0, 0, 10, [(0, 1.5)]),
+        ("Model!B3", 5, -10, 10, []),
+    ],
+)
+def test_a_range_in_which_the_cell_has_the_value_is_told_by_its_ends(book, cell, to, low, high, flat):
+    """As finely as the range is scanned: a part in a thousand of it."""
+    found = xlmc.seek(book, cell, to, "Model!B1", low=low, high=high)
+    assert np.allclose(np.reshape(found.throughout, (-1, 2)), np.reshape(flat, (-1, 2)), atol=(high - low) / 1000)
+    assert found.values.size == 2
+    assert found.answers == pytest.approx([to, to])
 
 
 def test_the_curve_passes_the_value(book):

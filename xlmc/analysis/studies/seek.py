@@ -7,6 +7,7 @@ outwards from the value in the cell, in steps that double, as far as 10¹² time
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
@@ -57,6 +58,8 @@ class Found:
         values: `(r,)` all values of `by` at which the cell is `to`: ascending, or the nearest to the base first where
             no range was given.
         answers: `(r,)` what the cell is at these.
+        throughout: ranges of `by` in which the cell is `to` everywhere, as finely as was looked; of each, `values` has
+            both ends.
         curve: `(p,)` values of `by`, and `(p,)` what the cell is there; NaN where it has no number.
     """
 
@@ -70,6 +73,7 @@ class Found:
     high: float
     values: Floats
     answers: Floats
+    throughout: tuple[tuple[float, float], ...]
     curve: tuple[Floats, Floats]
 
     @property
@@ -127,7 +131,7 @@ def seek(
         found = [function(part, np.zeros(part.size, np.intp)) for part in parts]
         return np.concatenate([np.empty(0), *found]) + to
 
-    values = np.unique(find_roots(function, edges[:-1], edges[1:]).values)
+    values, throughout = _without_insides(np.unique(find_roots(function, edges[:-1], edges[1:]).values), answers, to)
     ends = float(edges[0]), float(edges[-1])
     if low is None or high is None:
         values = values[np.argsort(np.abs(values - (base or 0.0)), kind="stable")]
@@ -145,8 +149,26 @@ def seek(
         high=float(edges[-1]),
         values=values,
         answers=answers(values),
+        throughout=throughout,
         curve=(at, answers(at)),
     )
+
+
+def _without_insides(
+    values: Floats, answers: Callable[[Floats], Floats], to: float
+) -> tuple[Floats, tuple[tuple[float, float], ...]]:
+    """Return `(r,)` ascending values without those inside a range in which the cell is `to` throughout; and the ranges.
+
+    A cell that is rounded, or is TRUE or FALSE, is exactly `to` at many points of a scan, one beside the other.
+    """
+    joined = answers((values[:-1] + values[1:]) / 2.0) == to
+    begins, ends = (
+        np.flatnonzero(np.diff(np.concatenate([[False], joined, [False]]).astype(int)) == step) for step in (1, -1)
+    )
+    inside = np.zeros(values.size, bool)
+    inside[1:-1] = joined[:-1] & joined[1:]
+    ranges = zip(values[begins].tolist(), values[ends].tolist(), strict=True)
+    return values[~inside], tuple(ranges)
 
 
 def _check(to: float, low: float | None, high: float | None) -> None:

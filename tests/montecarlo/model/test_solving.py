@@ -157,6 +157,30 @@ def test_mistakes_are_named_with_their_cell(book, row, message, where):
     assert where in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("formula", "high", "message"),
+    [
+        (
+            "=50+(Inputs!B6-70)*(Inputs!B6-71)*(Inputs!B6-72)",
+            100,
+            "at 3 values of .*, and a run would find 1",
+        ),
+        ("=50+(Inputs!B6-71)*(Inputs!B6-72)", 100, "at 2 values of Inputs!B6 .*, and a run would find 0"),
+        ("=ROUND(Inputs!B6,-1)", 100, "at .* values of Inputs!B6 .*, and a run would find 1"),
+        ("=50+(Inputs!B6-70)*(Inputs!B6-71)*(Inputs!B6-72)", 70.5, None),
+    ],
+)
+def test_a_range_that_the_scan_is_too_coarse_for_is_refused(book, formula, high, message):
+    """Values within one sixteenth of the range; and a whole range of values."""
+    path = book([*ROW[:2], 50, ROW[3], 0, high, None], formula=formula)
+    if message is None:
+        assert xlmc.load(path).simulate(100, seed=1).forecasts["x"] == pytest.approx(np.full(100, 70.0))
+        return
+    with pytest.raises(DefinitionError, match=message) as caught:
+        load(path)
+    assert "Solve!A2" in str(caught.value)
+
+
 def test_the_slow_engine_says_that_it_cannot(book):
     with pytest.raises(FormulaError, match="The engine `formulas` cannot compute what a row of xlmc_solve gives"):
         xlmc.load(book()).simulate(100, engine="formulas")

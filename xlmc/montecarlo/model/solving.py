@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from xlmc.engine.engine import Target
 from xlmc.engine.graph.lowering import Lowering, lower_cells
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
+from xlmc.engine.roots import SCANNED, find_roots
 from xlmc.engine.roots import Function as Difference
-from xlmc.engine.roots import find_roots
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver, ir
@@ -35,6 +35,9 @@ Floats = NDArray[np.float64]
 
 _TOGETHER: Final = 1 << 14
 """Trials that are solved at once."""
+
+_FINE: Final = 64
+"""Into how many parts each part of a run's scan is divided at the base case, to see what the run would miss."""
 
 _BY: Final = "\0by"
 """The name of the unknown among inputs; no assumption has it."""
@@ -207,6 +210,7 @@ def _awaits(workbook: Workbook, definitions: Definitions, solve: Solve, left: Se
 
 def _call(workbook: Workbook, definitions: Definitions, solve: Solve) -> ir.Call:
     unknown = unknown_of(workbook, definitions, solve.cell, solve.to, solve.by, (solve.low, solve.high), solve.row)
+    _check_scan(definitions, unknown, solve)
     body = _Body(unknown, solve.root)
     row = Function(
         f"solve for {solve.name}",
@@ -219,6 +223,34 @@ def _call(workbook: Workbook, definitions: Definitions, solve: Solve) -> ir.Call
     cells: dict[str, Cell] = {a.name: a.cell for a in definitions.assumptions}
     arguments = tuple(cells[name] for name in unknown.inputs) or (ir.Number(0.0),)
     return ir.Call(f"SOLVE.{solve.name}", arguments, given=row)
+
+
+def _check_scan(definitions: Definitions, unknown: Unknown, solve: Solve) -> None:
+    """Refuse a range in which a finer scan of the base case finds other values than that of a run.
+
+    Two values within one part of the scan cancel, three look like one, and where a cell has the value throughout a
+    range, the scan's own points are found. Nothing is looked at where an assumption has no base value.
+
+    Raises:
+        DefinitionError: the scans differ.
+    """
+    bases = {a.name: a.base for a in definitions.assumptions}
+    given = {name: np.full(1, value) for name in unknown.inputs if (value := bases[name]) is not None}
+    if len(given) < len(unknown.inputs):
+        return
+    low, high = unknown.range_of(given, 1)
+    if not low[0] < high[0] < np.inf:
+        return
+    seen = find_roots(unknown.evaluated(given), low, high).values
+    edges = np.linspace(low[0], high[0], _FINE * SCANNED + 1)
+    columns = {name: np.full(edges.size - 1, value[0]) for name, value in given.items()}
+    exact = np.unique(find_roots(unknown.evaluated(columns), edges[:-1], edges[1:]).values)
+    if exact.size != seen.size:
+        message = (
+            f"At the base case {solve.cell} has its value at {exact.size} values of {solve.by} from {low[0]:g} to "
+            f"{high[0]:g}, as a fine scan finds, and a run would find {seen.size}"
+        )
+        raise DefinitionError(message, where=solve.row, hint="Give a narrower range, in which there is one")
 
 
 def fault_text(solves: Iterable[Solve], cell: Cell, code: ErrorCode | None) -> str:

@@ -82,6 +82,23 @@ def test_numbers_become_assumptions_and_last_formulas_forecasts(xlmc, book):
     assert xlmc("check", "beam-prepared.xlsx").code == 0
 
 
+def test_years_above_a_table_are_no_inputs(xlmc, tmp_path):
+    rows = [
+        ["Plan", 2026, "=B1+1", "=C1+1"],
+        ["Weight", 2000, "lb"],
+        ["Sales", 100, "=B3*(1+(C1-B1)*0.05)", "=C3*(1+(D1-C1)*0.05)"],
+        ["Total", "=SUM(B3:D3)*B2"],
+    ]
+    outcome = xlmc("prepare", write({"Plan": rows}, tmp_path / "plan.xlsx"), "--assumption", "Plan!B1")
+    assert outcome.code == 0, outcome.err  # where it is asked for, it is one
+    made = write({"Plan": rows}, tmp_path / "again.xlsx")
+    outcome = xlmc("prepare", made)
+    assert outcome.code == 0, outcome.err
+    assert "Plan!B3" in outcome.out
+    assert "Plan!B2" in outcome.out
+    assert "Plan!B1" not in outcome.out
+
+
 def test_a_row_is_frozen_until_a_distribution_is_typed(xlmc, book):
     xlmc("prepare", book)
     assert xlmc("check", "beam-prepared.xlsx").out.count("frozen") == 3

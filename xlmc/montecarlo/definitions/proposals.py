@@ -89,7 +89,8 @@ def proposals(
     passed: list[tuple[Cell, str]] = []
     if assumptions is None:
         shown = {sheet.name for sheet in book.sheets.values() if sheet.visible}
-        inputs = [cell for cell in used if cell.sheet in shown and _is_number(book.content(cell))]
+        found = (cell for cell in used if cell.sheet in shown and _is_number(book.content(cell)))
+        inputs = [cell for cell in found if not _is_year(book, cell)]
     else:
         inputs = list(_asked(assumptions, lambda cell: _not_an_input(book, computed, cell), "assumption", passed))
     inputs = [cell for cell in inputs if cell not in known and not _in_own_table(book, cell)]
@@ -211,6 +212,21 @@ def _not_an_answer(book: Workbook, computed: Computed, cell: Cell) -> tuple[str,
 def _is_number(content: CellContent) -> bool:
     value = content.value
     return content.formula is None and type(value) in (int, float)
+
+
+def _is_year(book: Workbook, cell: Cell) -> bool:
+    """Whether a number heads a column or a row of a table by years: the one beside it is the next or the last year."""
+    year = book.content(cell).value
+    if year not in range(1900, 2101):
+        return False
+    beside = [(cell.row, cell.column + step) for step in (-1, 1)] + [(cell.row + step, cell.column) for step in (-1, 1)]
+    contents = [book.content(Cell(cell.sheet, *place)) for place in beside if min(place) > 0]
+    following = f"{column_letters(cell.column)}{cell.row}+1"
+    return any(
+        content.value in (year - 1, year + 1)  # type: ignore[operator]
+        or (content.formula is not None and content.formula.text.replace("$", "").replace(" ", "") == following)
+        for content in contents
+    )
 
 
 def _proposal(book: Workbook, cell: Cell, names: set[str]) -> Proposal:

@@ -274,7 +274,8 @@ class Use:
         elif what == "undo":
             self._undo_and_redo(client)
         elif what == "variants":
-            before = {each["name"] for each in state["scenarios"]}
+            self.still()  # a scenario may just have been dropped, and is there again after this
+            before = {each["name"] for each in client.heard_last("state")["scenarios"]}
             client.say("variants")
             self.still()
             self.kept |= {each["name"] for each in client.heard_last("state")["scenarios"]} - before

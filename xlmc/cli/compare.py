@@ -18,6 +18,7 @@ from xlmc.cli.options import (
     engine_option,
     functions_option,
     jobs_option,
+    quiet_option,
     tolerance_option,
 )
 from xlmc.cli.study_output import STUDY, give_out, study_options
@@ -51,8 +52,7 @@ UNDECIDED = 1
 @jobs_option
 @click.option("--no-causes", is_flag=True, help="Do not look for what makes the difference.")
 @study_options(STUDY)
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-@click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@quiet_option
 @functions_option
 def compare(
     first: Path,

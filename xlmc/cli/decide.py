@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath, WholeNumber, engine_option, functions_option, jobs_option
-from xlmc.cli.study_output import STUDY_OF_A_RUN, give_out, study_options
+from xlmc.cli.options import FilePath, WholeNumber, engine_option, functions_option, jobs_option, quiet_option
+from xlmc.cli.study_output import STUDY_OF_A_RUN, conclude, give_out, study_options
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.decisions import Decided
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["decide"]
-
-NOT_TO_BE_USED = 1
 
 _MOST_LINES = 6
 
@@ -39,8 +37,7 @@ _MOST_LINES = 6
 @engine_option
 @jobs_option
 @study_options(STUDY_OF_A_RUN)
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-@click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@quiet_option
 @functions_option
 def decide(
     book: Path,
@@ -58,7 +55,6 @@ def decide(
 ) -> None:
     """Tell the answers of BOOK for every combination of its decisions, over the same random numbers."""
     from xlmc.analysis.studies import decisions as study
-    from xlmc.cli.printing import warnings
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.study_report import Files
@@ -70,11 +66,7 @@ def decide(
         found = study.decide(model, table, trials=trials, seed=seed, engine=engine, jobs=jobs, tell=tell)
     report = _report(found)
     written = give_out(report, files.writers(report), as_json, [f"{report.below}.", *report.blocks])
-    doubts = [*found.run.warnings, *_doubts(found)]
-    warnings(doubts, found.run.refused)
-    written.check()
-    if doubts:
-        raise click.exceptions.Exit(NOT_TO_BE_USED)
+    conclude(written, found.run, _doubts(found))
 
 
 def _doubts(found: Decided) -> list[str]:

@@ -55,7 +55,6 @@ _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm|xls))!(?P<ran
     help="Write the row into the table xlmc_assumptions of this workbook: into the row of that name, or below all.",
 )
 @study_options(STUDY)
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 def fit(
     source: str,
     cells: str | None,

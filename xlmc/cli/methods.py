@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import FilePath, WholeNumber, functions_option
-from xlmc.cli.study_output import study_options
+from xlmc.cli.options import FilePath, WholeNumber, functions_option, quiet_option
+from xlmc.cli.study_output import NOT_TO_BE_USED, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
 
@@ -17,9 +17,6 @@ if TYPE_CHECKING:
     from xlmc.excel.own_functions import OwnFunctions
 
 __all__ = ["methods"]
-
-
-NOT_TO_BE_USED = 1
 
 
 @click.command()
@@ -48,8 +45,7 @@ NOT_TO_BE_USED = 1
 @click.option("--quick", is_flag=True, help="Few and short runs: a first look, in about half a minute.")
 @click.option("--seed", type=WholeNumber(0), help="Seed of the reference; the runs have others.  [default: the book's]")
 @study_options("the figure (.png), a workbook (.xlsx), a document (.pdf, .docx), a page (.html), JSON (.json)")
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-@click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@quiet_option
 @functions_option
 def methods(
     book: Path,

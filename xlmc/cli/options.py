@@ -21,6 +21,7 @@ __all__ = [
     "feed_option",
     "functions_option",
     "jobs_option",
+    "quiet_option",
     "run_options",
     "tolerance_option",
 ]
@@ -154,6 +155,9 @@ def _setting_option(setting: Setting) -> Callable[[F], F]:
         case Seconds():
             return click.option(*names, metavar="TIME", help=setting.help)
 
+
+quiet_option = click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+"""The option of studies."""
 
 engine_option = _setting_option(SETTINGS["engine"])
 

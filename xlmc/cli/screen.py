@@ -17,9 +17,10 @@ from xlmc.cli.options import (
     engine_option,
     functions_option,
     jobs_option,
+    quiet_option,
     tolerance_option,
 )
-from xlmc.cli.study_output import STUDY_OF_A_RUN, give_out, study_options
+from xlmc.cli.study_output import STUDY_OF_A_RUN, conclude, give_out, study_options
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.screening import AtEnds, Cost, Screening
@@ -28,8 +29,6 @@ if TYPE_CHECKING:
     from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["screen"]
-
-NOT_TO_BE_USED = 1
 
 
 @click.command()
@@ -64,8 +63,7 @@ NOT_TO_BE_USED = 1
 @engine_option
 @jobs_option
 @study_options(STUDY_OF_A_RUN)
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-@click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@quiet_option
 @functions_option
 def screen(
     book: Path,
@@ -90,7 +88,6 @@ def screen(
     changing its answers.
     """
     from xlmc.analysis.studies import screening
-    from xlmc.cli.printing import warnings
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.study_report import Files
@@ -120,10 +117,7 @@ def screen(
         as_json,
         [f"{report.below.partition(':')[0]}: what it could do without", *report.blocks],
     )
-    warnings(found.run.warnings, found.run.refused)
-    written.check()
-    if found.run.warnings:
-        raise click.exceptions.Exit(NOT_TO_BE_USED)
+    conclude(written, found.run)
 
 
 def _report(found: Screening) -> StudyReport:

@@ -31,7 +31,6 @@ NOT_FOUND = 1
 @click.option("--low", type=float, help="The least value of that cell.  [default: search outwards from its own value]")
 @click.option("--high", type=float, help="The largest value of that cell.")
 @study_options(STUDY)
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @functions_option
 def seek(
     book: Path,

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import FilePath, WholeNumber, functions_option, jobs_option
-from xlmc.cli.study_output import STUDY_OF_A_RUN, study_options
+from xlmc.cli.options import FilePath, WholeNumber, functions_option, jobs_option, quiet_option
+from xlmc.cli.study_output import NOT_TO_BE_USED, STUDY_OF_A_RUN, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
 from xlmc.errors import capitalised
@@ -24,8 +24,6 @@ if TYPE_CHECKING:
 
 __all__ = ["stability"]
 
-NOT_TO_BE_USED = 1
-
 
 @click.command()
 @click.argument("book", type=FilePath())
@@ -34,8 +32,7 @@ NOT_TO_BE_USED = 1
 @click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
 @jobs_option
 @study_options(STUDY_OF_A_RUN)
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-@click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@quiet_option
 @functions_option
 def stability(
     book: Path,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -15,6 +15,7 @@ from xlmc.cli.writing import Written, write_files
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison import Acceptance, Change, Difference
+    from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.montecarlo.statistics import Estimate
     from xlmc.outputs.document.parts import Block
     from xlmc.outputs.study_report import StudyReport
@@ -22,12 +23,17 @@ if TYPE_CHECKING:
 STUDY = "a sheet (.xlsx), a document (.pdf, .docx), a page (.html), the result as JSON (.json)"
 STUDY_OF_A_RUN = f"{STUDY}, the accepted trials of the book's run (.csv, .parquet), that run (.xlmcrun)"
 
+NOT_TO_BE_USED = 1
+"""The exit code where there are answers that must not be used."""
+
 Command = TypeVar("Command", bound=Callable[..., Any])
 
 __all__ = [
+    "NOT_TO_BE_USED",
     "STUDY",
     "STUDY_OF_A_RUN",
     "acceptance_json",
+    "conclude",
     "difference_json",
     "estimate_json",
     "give_out",
@@ -36,18 +42,21 @@ __all__ = [
 
 
 def study_options(kinds: str) -> Callable[[Command], Command]:
-    """Add `-o`, the options that stand for one kind of file each, and `--overwrite`.
+    """Add `-o`, the options that stand for one kind of file each, `--overwrite` and `--json`.
 
-    The command is given the files as `output` and `also`, and `overwrite`.
+    The command is given the files as `output` and `also`, `overwrite` and `as_json`.
 
     Args:
         kinds: what it writes, as the help says it.
     """
     text = f"What to write, by its ending: {kinds}. May be given several times; by default nothing is written."
-    overwrite = click.option("--overwrite", is_flag=True, help="Replace existing files, whoever wrote them.")
+    others = (
+        click.option("--overwrite", is_flag=True, help="Replace existing files, whoever wrote them."),
+        click.option("--json", "as_json", is_flag=True, help="Print the result as JSON."),
+    )
 
     def add(command: Command) -> Command:
-        return with_files(text, ("html", "pdf", "docx"))(with_options(overwrite)(command))
+        return with_files(text, ("html", "pdf", "docx"))(with_options(*others)(command))
 
     return add
 
@@ -75,6 +84,27 @@ def give_out(
         show(blocks_of(said))
         written.print_paths()
     return written
+
+
+def conclude(written: Written, run: RunResult, doubts: Sequence[str] = ()) -> None:
+    """Print the warnings of a study's run, and end with exit code 1 where there is one.
+
+    Args:
+        written: the files of the study, whose errors come behind the warnings.
+        run: of the book.
+        doubts: other reasons why answers must not be used.
+
+    Raises:
+        XlmcError: a file could not be written.
+        Exit: the answers must not be used.
+    """
+    from xlmc.cli.printing import warnings
+
+    reasons = [*run.warnings, *doubts]
+    warnings(reasons, run.refused)
+    written.check()
+    if reasons:
+        raise click.exceptions.Exit(NOT_TO_BE_USED)
 
 
 def estimate_json(estimate: Estimate) -> dict[str, float | None]:

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath, WholeNumber, engine_option, functions_option, jobs_option
-from xlmc.cli.study_output import STUDY, give_out, study_options
+from xlmc.cli.options import FilePath, WholeNumber, engine_option, functions_option, jobs_option, quiet_option
+from xlmc.cli.study_output import STUDY, conclude, give_out, study_options
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.uncertainty import Band, ForecastBands, TwoLoops
@@ -19,8 +19,6 @@ if TYPE_CHECKING:
     from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["uncertainty"]
-
-NOT_TO_BE_USED = 1
 
 
 @click.command()
@@ -52,8 +50,7 @@ NOT_TO_BE_USED = 1
 @engine_option
 @jobs_option
 @study_options(STUDY)
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
-@click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
+@quiet_option
 @functions_option
 def uncertainty(
     book: Path,
@@ -77,7 +74,6 @@ def uncertainty(
     varies in an inner one.
     """
     from xlmc.analysis.studies import uncertainty as study
-    from xlmc.cli.printing import warnings
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.study_report import Files
@@ -101,10 +97,7 @@ def uncertainty(
         )
     report = _report(found)
     written = give_out(report, files.writers(report), as_json, [report.below, *report.blocks])
-    warnings(found.run.warnings, found.run.refused)
-    written.check()
-    if found.run.warnings:
-        raise click.exceptions.Exit(NOT_TO_BE_USED)
+    conclude(written, found.run)
 
 
 def _report(found: TwoLoops) -> StudyReport:

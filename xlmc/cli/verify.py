@@ -28,7 +28,6 @@ _SHOWN, _WRITTEN = 50, 2_000
 @click.argument("book", type=FilePath())
 @click.option("--all", "everything", is_flag=True, help="Check every formula cell, not only the needed ones.")
 @study_options(STUDY)
-@click.option("--json", "as_json", is_flag=True, help="Print the result as JSON.")
 @functions_option
 def verify(
     book: Path,

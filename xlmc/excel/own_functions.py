@@ -194,7 +194,7 @@ def _module(source: bytes, path: str) -> ModuleType:
     except SyntaxError as error:
         message = f"the file is not Python: {error.msg} (line {error.lineno})"
         raise WorkbookError(message, where=path, hint="Correct that line") from error
-    except Exception as error:
+    except Exception as error:  # whatever a person's code raises is told in words
         message = f"the file fails when it is run: {_told(error, path)}"
         raise WorkbookError(message, where=path, hint="Correct it; python can run it alone") from error
     return module
@@ -321,7 +321,7 @@ class _Body:
         try:
             with np.errstate(all="ignore"):
                 return self.function(*arguments)
-        except Exception as error:
+        except Exception as error:  # whatever a person's code raises is told in words
             hint = f"correct the function; it is called with {self._shapes(arguments)}"
             raise self._error(f"failed: {_told(error, self.path)}", hint) from error
 

@@ -125,7 +125,7 @@ def _computable(
         Resolver(book, inputs),
         build_graph(Resolver(book, strict=False), cells, frozenset(inputs), strict=False).varying,
     )
-    held = {cell: float(book.content(cell).value) for cell in inputs}  # type: ignore[arg-type]
+    held = {cell: float(book.content(cell).value) for cell in inputs}  # type: ignore[arg-type]  # inputs are numbers
 
     def fault(wanted: list[Cell]) -> str:
         try:
@@ -217,13 +217,13 @@ def _is_number(content: CellContent) -> bool:
 def _is_year(book: Workbook, cell: Cell) -> bool:
     """Whether a number heads a column or a row of a table by years: the one beside it is the next or the last year."""
     year = book.content(cell).value
-    if year not in range(1900, 2101):
+    if not isinstance(year, int | float) or year not in range(1900, 2101):
         return False
     beside = [(cell.row, cell.column + step) for step in (-1, 1)] + [(cell.row + step, cell.column) for step in (-1, 1)]
     contents = [book.content(Cell(cell.sheet, *place)) for place in beside if min(place) > 0]
     following = f"{column_letters(cell.column)}{cell.row}+1"
     return any(
-        content.value in (year - 1, year + 1)  # type: ignore[operator]
+        content.value in (year - 1, year + 1)
         or (content.formula is not None and content.formula.text.replace("$", "").replace(" ", "") == following)
         for content in contents
     )

@@ -367,7 +367,7 @@ def _filter(filter_: Filter, changed: Changed) -> Filter:
     used = bool(given.pop("used", filter_.used))
     if filter_.evidence is not None:
         return replace(filter_, used=used, evidence=_evidence(filter_.evidence, changed))
-    return replace(filter_, used=used, **_numbers(given))  # type: ignore[arg-type]
+    return replace(filter_, used=used, **_numbers(given))  # type: ignore[arg-type]  # of its limits
 
 
 def _evidence(evidence: Evidence, changed: Changed) -> Evidence:

@@ -85,13 +85,14 @@ def examples(session: nox.Session) -> None:
 
 @nox.session
 def package(session: nox.Session) -> None:
-    """Build wheel and source archive into dist/, and look at what is in them."""
+    """Build wheel and source archive into dist/, look at what is in them, and build LibreOffice's menu into build/."""
     session.install("-e", ".[release]")
     shutil.rmtree(DIST, ignore_errors=True)
     session.run("python", "-m", "build", "--outdir", str(DIST))
     built = sorted(map(str, DIST.iterdir()))
     session.run("twine", "check", "--strict", *built)
     session.run("check-wheel-contents", *(each for each in built if each.endswith(".whl")))
+    session.run("python", "packaging/libreoffice/build.py")
 
 
 @nox.session

@@ -35,7 +35,7 @@ BOOKS = {
     "templates/pedestrian.xlsx": "A pedestrian: throw and vehicle together",
     "templates/beam.xlsx": "A beam with uncertain load and strength: does it fail in 50 years?",
     "templates/tolerance-stack.xlsx": "A tolerance stack that expands with temperature",
-    "templates/mass-calibration.xlsx": "The calibration of a weight, the example of JCGM 101",
+    "templates/mass-calibration.xlsx": "The calibration of a weight: quantities that act only together",
     "templates/project.xlsx": "A project: cost, finish date, register of risks",
     "templates/warranty.xlsx": "A warranty: Weibull life, claims of a year",
 }

@@ -21,9 +21,8 @@ from templates.other_fields.guidance import CAVEATS, EXAMPLE, EXAMPLE_NUMBERS, F
 
 __all__ = ["TEMPLATE"]
 
-_LOADS = "Ellingwood, Galambos, MacGregor and Cornell, NBS Special Publication 577 (1980)"
-_STEEL = "Galambos and Ravindra, Properties of Steel for Use in LRFD, ASCE Journal of the Structural Division, 1978"
-_SECTION = "W16×31 [|(W410×46)]: AISC Steel Construction Manual. Enter yours"
+_JCSS = "JCSS Probabilistic Model Code"
+_SECTION = "Example: a rolled section. Enter yours, from the maker's table"
 
 _ASSUMPTIONS = (
     Input(
@@ -32,7 +31,7 @@ _ASSUMPTIONS = (
         "Dead load",
         "[kip/ft|kN/m]",
         Both(0.525, 7.66),
-        f"Example: 1.05 × nominal [0.50 kip/ft|7.3 kN/m]. Ratio and CoV: {_LOADS}",
+        "Example: a little above the nominal [0.50 kip/ft|7.3 kN/m]. Enter yours",
         {"Mean": Both(0.525, 7.66), "CoV %": 10},
         "Normal",
         "0.000",
@@ -43,7 +42,7 @@ _ASSUMPTIONS = (
         "Live load, the greatest in 50 years",
         "[kip/ft|kN/m]",
         Both(1.2, 17.5),
-        f"Example: 1.00 × nominal. Ratio, CoV and type (Gumbel, the largest of many): {_LOADS}",
+        "Example. Gumbel, since it is the largest of many. Enter yours",
         {"Mean": Both(1.2, 17.5), "CoV %": 25},
         "Gumbel",
         "0.000",
@@ -54,7 +53,7 @@ _ASSUMPTIONS = (
         "Yield strength",
         "[ksi|MPa]",
         Both(52.5, 362),
-        f"1.05 × specified [50 ksi|345 MPa]; CoV of flanges: {_STEEL}",
+        f"Example, above the specified [50 ksi|345 MPa]. Type and CoV: {_JCSS}, see sheet Guide",
         {"Mean": Both(52.5, 362), "CoV %": 10},
         "Lognormal",
         "0.0",
@@ -65,7 +64,7 @@ _ASSUMPTIONS = (
         "Section modulus, real to nominal",
         "",
         1,
-        f"Fabrication: {_STEEL}",
+        "Example: what rolling and fabrication leave. Enter yours",
         {"Mean": 1, "CoV %": 5},
         "Normal",
         "0.00",
@@ -76,7 +75,7 @@ _ASSUMPTIONS = (
         "Strength, tested to computed",
         "",
         1.02,
-        f"Compact beams, plastic moment: {_STEEL}",
+        f"Example. {_JCSS}: mean 1.0, CoV 5 %; see sheet Guide",
         {"Mean": 1.02, "CoV %": 6},
         "Normal",
         "0.00",
@@ -87,7 +86,7 @@ _CONSTANTS = (
     Input("span", "L", "Span", "[ft|m]", Both(24, 7.3), EXAMPLE, number_format="0.00"),
     Input("Z_x", "Z", "Plastic section modulus", "[in³|cm³]", Both(54, 884), _SECTION, number_format="0.0"),
     Input("I_x", "I", "Moment of inertia", "[in⁴|cm⁴]", Both(375, 15600), _SECTION, number_format="0"),
-    Input("E_s", "E", "Modulus of elasticity", "[ksi|MPa]", Both(29000, 200000), "AISC 360", number_format="#,##0"),
+    Input("E_s", "E", "Modulus of elasticity", "[ksi|MPa]", Both(29000, 200000), "Structural steel", number_format="#,##0"),
     Input(
         "q_test",
         "qtest",
@@ -213,7 +212,7 @@ _CHECKS = checks_section(
         "check_steel",
         "The strength is that of a structural steel",
         "AND(fy>=[25|170],fy<=[150|1030])",
-        "ASTM A36 to A514",
+        "usual range",
         "FALSE: in other units?",
     ),
     check(
@@ -259,15 +258,14 @@ _GUIDE = (
         ),
     ),
     GuideSection(
-        "Published statistics",
-        ("Mean in terms of the nominal value, and coefficient of variation.",),
+        "Published statistics (JCSS Probabilistic Model Code, part 3)",
+        ("Of rolled sections. Loads, means and the section modulus of this workbook are examples.",),
         (
-            ("Quantity", "Mean, CoV, type"),
-            ("Dead load (NBS SP 577)", "1.05, 10 %, normal"),
-            ("Live load, greatest of 50 years (NBS SP 577)", "1.00, 25 %, Gumbel"),
-            ("Yield strength of flanges (Galambos and Ravindra)", "1.05, 10 %"),
-            ("Section modulus (Galambos and Ravindra)", "1.00, 5 %"),
-            ("Plastic moment, test to theory (Galambos and Ravindra)", "1.02, 6 %"),
+            ("Quantity", "Type, mean, CoV"),
+            ("Yield strength, European production", "lognormal, 7 %; in the US and Canada about half as much again"),
+            ("Modulus of elasticity", "lognormal, specified value, 3 %"),
+            ("Area of a rolled profile (part 2, Self Weight)", "1 % above nominal; SD 4 % of nominal"),
+            ("Bending capacity, real to computed", "lognormal, 1.0, 5 %"),
         ),
     ),
     CAVEATS,

@@ -1,14 +1,14 @@
-"""The calibration of a weight by comparison in air: the example of JCGM 101:2008, 9.3."""
+"""The calibration of a weight by comparison in air: what acts only together with something else."""
 
 from __future__ import annotations
 
 from templates.checks import check, checks_section
 from templates.description import Equation, ForecastRow, GuideSection, Input, Role, Section, Template
-from templates.other_fields.guidance import CAVEATS, FIRST_STEPS
+from templates.other_fields.guidance import CAVEATS, EXAMPLE, EXAMPLE_NUMBERS, FIRST_STEPS
 
 __all__ = ["TEMPLATE"]
 
-_TABLE = "JCGM 101:2008, table 5"
+_LIMITS = "Example. Limits and nothing else known. Enter yours"
 
 _ASSUMPTIONS = (
     Input(
@@ -17,7 +17,7 @@ _ASSUMPTIONS = (
         "Conventional mass of the reference weight",
         "mg",
         100_000,
-        f"{_TABLE}: from its certificate",
+        "Example. Enter: its certificate",
         {"Mean": 100_000, "Std dev": 0.05},
         "Normal",
         "0.000",
@@ -28,19 +28,19 @@ _ASSUMPTIONS = (
         "Mass added to balance the weight",
         "mg",
         1.234,
-        f"{_TABLE}: from the comparison",
+        "Example. Enter: your comparison",
         {"Mean": 1.234, "Std dev": 0.02},
         "Normal",
         "0.000",
     ),
-    Input("rho_a", "ρa", "Density of the air", "kg/m³", 1.2, _TABLE, {"Low": 1.1, "High": 1.3}, "Uniform", "0.00"),
+    Input("rho_a", "ρa", "Density of the air", "kg/m³", 1.2, _LIMITS, {"Low": 1.1, "High": 1.3}, "Uniform", "0.00"),
     Input(
         "rho_W",
         "ρW",
         "Density of the weight",
         "kg/m³",
         8000,
-        _TABLE,
+        _LIMITS,
         {"Low": 7000, "High": 9000},
         "Uniform",
         "0",
@@ -51,7 +51,7 @@ _ASSUMPTIONS = (
         "Density of the reference weight",
         "kg/m³",
         8000,
-        _TABLE,
+        _LIMITS,
         {"Low": 7950, "High": 8050},
         "Uniform",
         "0",
@@ -59,15 +59,15 @@ _ASSUMPTIONS = (
 )
 
 _CONSTANTS = (
-    Input("m_nom", "mnom", "Nominal mass", "mg", 100_000, "JCGM 101:2008, 9.3: 100 g", number_format="#,##0"),
-    Input("rho_a0", "ρa0", "Density of the air, conventional", "kg/m³", 1.2, "OIML R 111", number_format="0.0"),
+    Input("m_nom", "mnom", "Nominal mass", "mg", 100_000, f"{EXAMPLE} (100 g)", number_format="#,##0"),
+    Input("rho_a0", "ρa0", "Density of the air, conventional", "kg/m³", 1.2, "OIML D 28 (2004)", number_format="0.0"),
     Input(
         "permitted",
         "MPE",
         "Maximum permissible error",
         "mg",
         1.6,
-        "OIML R 111-1:2004, table 1: class F2, 100 g",
+        "Example. Enter: the limit of its class",
         number_format="0.00",
     ),
 )
@@ -89,7 +89,7 @@ _STEPS = (
         "Correction for the buoyancy of the air",
         "mg",
         "(m_Rc+dm_Rc)*(rho_a-rho_a0)*volumes",
-        "JCGM 101, 9.3",
+        "m·(ρa − ρa0)·v",
         number_format="0.0000",
     ),
     Equation(
@@ -98,8 +98,8 @@ _STEPS = (
         "Deviation from the nominal mass",
         "mg",
         "(m_Rc-m_nom)+dm_Rc+buoyancy",
-        "JCGM 101, 9.3′",
-        "Rewritten: 100,000 mg are subtracted first, so that no digits are lost.",
+        "mR,c − mnom + δmR,c + B",
+        "100,000 mg are subtracted first, so that no digits are lost.",
         Role.ANSWER,
         "0.0000",
     ),
@@ -140,34 +140,25 @@ _CHECKS = checks_section(
 )
 
 _GUIDE = (
+    EXAMPLE_NUMBERS,
+    FIRST_STEPS,
     GuideSection(
-        "This workbook",
+        "When to use this model",
         (
-            "The example of JCGM 101:2008, 9.3: a weight of 100 g is compared with a reference weight in air. All "
-            "ranges are those of its table 5. Replace them with those of your own measurement.",
-            "A run of 200,000 trials gives what JCGM 101 publishes: 1.234 mg with a standard uncertainty of 0.075 mg, "
-            "and 95 % between 1.08 and 1.38 mg.",
+            "A weight of 100 g is compared with a reference weight in air, which carries the two unequally where their "
+            "densities differ. The conventional mass of a body is that of the weight of 8000 kg/m³ which balances it "
+            "in air of 1.2 kg/m³ (OIML D 28, 2004). It answers how far the weight is from its nominal mass.",
         ),
     ),
-    FIRST_STEPS,
     GuideSection(
         "What it shows",
         (
-            "The law of propagation, to first order, gives 0.054 mg: the density of the air and that of the weight "
-            "each do nothing alone while the other is at its middle. Together they are the largest part. Sobol indices "
+            "The law of propagation, to first order, gives 0.054 mg for these numbers, and Monte Carlo 0.075 mg: the "
+            "density of the air and that of the weight each do nothing alone while the other is at its middle. "
+            "Together they are the largest part. Sobol indices "
             "show that: their first order is 0, their total is not.",
             "xlmc methods mass-calibration.xlsx   runs the propagation beside Monte Carlo and says which to use.",
             "xlmc simulate mass-calibration.xlsx --adaptive 2   runs until two digits are stable (JCGM 101, 7.9).",
-        ),
-    ),
-    GuideSection(
-        "Published results (JCGM 101:2008, table 6), mg",
-        ("Mean, standard uncertainty, shortest interval of 95 %.",),
-        (
-            ("Method", "Result"),
-            ("Monte Carlo", "1.2341, 0.0754, 1.0834 to 1.3825"),
-            ("Propagation, first order", "1.2340, 0.0539, 1.1285 to 1.3395"),
-            ("Propagation, with higher order", "1.2340, 0.0750, 1.0870 to 1.3810"),
         ),
     ),
     CAVEATS,
@@ -175,7 +166,7 @@ _GUIDE = (
 
 TEMPLATE = Template(
     title="Calibration of a weight",
-    subtitle="JCGM 101:2008, 9.3: a weight of 100 g compared with a reference in air",
+    subtitle="A weight of 100 g is compared with a reference weight in air",
     rung=3,
     question="How far is a weight from its nominal mass, and does it conform?",
     needs="the comparison, densities of air and weights",

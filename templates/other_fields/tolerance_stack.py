@@ -21,7 +21,7 @@ from templates.other_fields.guidance import CAVEATS, EXAMPLE, EXAMPLE_NUMBERS, F
 __all__ = ["TEMPLATE"]
 
 _RECTANGULAR = "Example. Limits and nothing else known: rectangular (GUM, JCGM 100:2008, 4.3.7)"
-_CAPABLE = "Example. Process with Cpk 1: the tolerance is 3 standard deviations (normal: GUM 4.3.4)"
+_CAPABLE = "Example. Process with Cpk 1: the tolerance is 3 standard deviations"
 _TRIANGULAR = "Example. Values near the limits less likely than at the middle: triangular (GUM 4.3.9)"
 _NUMBER = "0.000[0|]"
 
@@ -220,16 +220,16 @@ _GUIDE = (
     GuideSection(
         "Type B: which distribution for what is known",
         (
-            "From the Guide to the expression of uncertainty in measurement (JCGM 100:2008) and its supplement 1 (JCGM "
-            "101:2008, table 1).",
+            "After the Guide to the expression of uncertainty in measurement (GUM, JCGM 100:2008) and its supplement 1 "
+            "(JCGM 101:2008).",
         ),
         (
             ("What is known", "Distribution"),
             ("Limits ± a, nothing else (GUM 4.3.7)", "Uniform: Low, High. Standard uncertainty a/√3"),
             ("Limits ± a, the middle likelier (GUM 4.3.9)", "Triangular; a/√6"),
-            ("The sum of two errors with limits (JCGM 101, 6.4.4)", "Trapezoid"),
+            ("The sum of two errors with limits ± a and ± b", "Trapezoid; Triangular where they are alike"),
             ("A value with standard uncertainty u, or U = k·u (GUM 4.3.3)", "Normal: Mean, Std dev U/k"),
-            ("A mean of n readings (JCGM 101, 6.4.9)", "Student's t: Midpoint, Scale s/√n, Degrees of freedom n − 1"),
+            ("A mean of n readings (JCGM 101, 6.4.9.2)", "Student's t: Midpoint, Scale s/√n, Degrees of freedom n − 1"),
         ),
     ),
     CAVEATS,

@@ -46,7 +46,7 @@ _WANTED: Final = (
     "xlmc.outputs.page",
     "xlmc.outputs.replay",
     "xlmc.analysis.studies.verify",
-    "xlmc.excel.workbook.old_format.joined_package",
+    "xlmc.excel.workbook.other_formats.joined_package",
     "xlsxwriter",
 )
 

@@ -24,7 +24,7 @@ from old_format_book import compound, drawing, number, plain_book, record, shape
 from fuzzing import zips
 from fuzzing.hidden_blocks import BLOCK_CHANGES, book_parts, refuse_silence
 from fuzzing.inputs import Input, Reached, steps_of
-from xlmc.excel.workbook.old_format import joined_package
+from xlmc.excel.workbook.other_formats import joined_package
 from xlmc.excel.workbook.reader import read_workbook
 
 __all__ = ["make", "run"]
@@ -109,7 +109,7 @@ def run(given: Input, folder: Path) -> Reached:
         Disagreement: a cell that was drawn is a constant now.
     """
     before = joined_package.converted_to_xlsx
-    joined_package.converted_to_xlsx = lambda _: _converted()
+    joined_package.converted_to_xlsx = lambda *_: _converted()
     try:
         refuse_silence(given)
         return zips.run(given, folder)

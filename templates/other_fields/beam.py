@@ -86,7 +86,9 @@ _CONSTANTS = (
     Input("span", "L", "Span", "[ft|m]", Both(24, 7.3), EXAMPLE, number_format="0.00"),
     Input("Z_x", "Z", "Plastic section modulus", "[in³|cm³]", Both(54, 884), _SECTION, number_format="0.0"),
     Input("I_x", "I", "Moment of inertia", "[in⁴|cm⁴]", Both(375, 15600), _SECTION, number_format="0"),
-    Input("E_s", "E", "Modulus of elasticity", "[ksi|MPa]", Both(29000, 200000), "Structural steel", number_format="#,##0"),
+    Input(
+        "E_s", "E", "Modulus of elasticity", "[ksi|MPa]", Both(29000, 200000), "Structural steel", number_format="#,##0"
+    ),
     Input(
         "q_test",
         "qtest",

@@ -49,7 +49,7 @@ __all__ = ["main", "xlmc"]
 
 BAD_INPUT = 2
 
-_BOOKS: Final = (".xlsx", ".xlsm", ".xltx", ".xltm", ".xls")
+_BOOKS: Final = (".xlsx", ".xlsm", ".xltx", ".xltm", ".xls", ".xlsb", ".ods")
 
 _ASKING_TO_END: Final = ("SIGTERM", "SIGHUP", "SIGBREAK")
 _STDERR: Final = 2

@@ -35,7 +35,7 @@ _BY = (
     "Rank them by: aic or bic (how probable the values are, with a deduction for each parameter); ad"
     " (Anderson-Darling) or ks (Kolmogorov-Smirnov), both of which say how far the distribution is from the values."
 )
-_BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm|xls))!(?P<range>.+)", re.IGNORECASE)
+_BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm|xlsb?|ods))!(?P<range>.+)", re.IGNORECASE)
 
 
 @click.command()

@@ -41,13 +41,13 @@ def prepare(path: Path, name: str, fitted: Fitted, base: float, source: str) -> 
     from xlmc.analysis.studies.fitting import parameter_texts, rounded_value
     from xlmc.excel.workbook.package_check import checked_bytes
     from xlmc.excel.workbook.reader import read_workbook
-    from xlmc.excel.workbook.target import refuse_into_old_workbook
+    from xlmc.excel.workbook.target import refuse_into_other_format
     from xlmc.excel.workbook.writer import refuse_if_open
     from xlmc.montecarlo.definitions.tables.new_row import row_edit
 
     refuse_if_open(path)
     workbook = read_workbook(path)
-    refuse_into_old_workbook(path)
+    refuse_into_other_format(path)
     parameters = {heading: float(text) for heading, text in parameter_texts(fitted).items()}
     row = row_edit(workbook, name, fitted.name, parameters, rounded_value(fitted, base), source)
     data = checked_bytes(_parts(workbook, row), workbook.parts)

@@ -46,7 +46,7 @@ def prepare_book(
         Target,
         copy_ending,
         is_same_file,
-        refuse_into_old_workbook,
+        refuse_into_other_format,
         refuse_into_source,
     )
     from xlmc.excel.workbook.writer import refuse_if_open, write_workbook
@@ -61,7 +61,7 @@ def prepare_book(
     target = book if in_place else output or book.with_name(f"{book.stem}-prepared{copy_ending(book)}")
     check_ending(target, book)
     if in_place:
-        refuse_into_old_workbook(book)
+        refuse_into_other_format(book)
     else:
         Target(target, "", overwrite, read=[book]).check()
     found = prepared(book, _areas(workbook, assumptions), _areas(workbook, forecasts), workbook)

@@ -32,6 +32,7 @@ def is_saved_value(lowering: Lowering, cell: Cell, saved: CellValue, got: object
     """
     return (
         same_value(saved, got)
+        or _is_logical_of_libreoffice(lowering, saved, got)
         or _is_settled(lowering, cell, saved, got)
         or _is_sine_of_32_bits(lowering, cell, saved, got)
     )
@@ -90,6 +91,11 @@ def relative_difference(saved: object, got: object) -> float | None:
         return None
     first, second = float(saved), float(got)
     return abs(first - second) / max(abs(first), abs(second), 5e-324)
+
+
+def _is_logical_of_libreoffice(lowering: Lowering, saved: CellValue, got: object) -> bool:
+    """Return whether a formula gives the logical that LibreOffice, which has no logicals, saved as 1 or 0."""
+    return lowering.graph.workbook.libreoffice and isinstance(got, bool) and _is_number(saved) and saved == got
 
 
 def _is_settled(lowering: Lowering, cell: Cell, saved: CellValue, got: object) -> bool:

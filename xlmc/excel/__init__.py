@@ -21,7 +21,8 @@ def load(path: str | Path, *, functions: str | Path | None = None) -> Workbook:
     """Read an `.xlsx` or `.xlsm` workbook: cells with formulas and saved values, names, tables.
 
     Nothing is calculated: `book["Sheet!B4"]` is the value that is saved in the file, None if none is. Sheets are
-    parsed when they are first looked up. An `.xls` is converted by LibreOffice, where it is installed.
+    parsed when they are first looked up. An `.xls`, `.xlsb` or `.ods` is converted by LibreOffice,
+    where it is installed.
 
     Args:
         path: of the workbook.

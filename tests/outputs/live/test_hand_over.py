@@ -13,7 +13,7 @@ from old_format_book import plain_book
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.saved import open_run
 from xlmc.errors import DefinitionError, WorkbookError, XlmcError
-from xlmc.excel.workbook.old_format import joined_package
+from xlmc.excel.workbook.other_formats import joined_package
 from xlmc.excel.workbook.package import read_parts
 from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.live import hand_over
@@ -177,7 +177,7 @@ def test_of_an_old_workbook_results_and_copies_are_new_ones_and_nothing_is_typed
     keep_sheets(monkeypatch, *SHORT)
     keep_few_trials(monkeypatch)
     parts = read_parts(small(tmp_path / "source.xlsx").read_bytes())
-    monkeypatch.setattr(joined_package, "parts_of_old_workbook", lambda _: parts)
+    monkeypatch.setattr(joined_package, "parts_of_other_format", lambda *_: parts)
     book = tmp_path / "case.xls"
     book.write_bytes(plain_book({"S": b""}))
     before, session = book.read_bytes(), Session(load(book))

@@ -18,7 +18,7 @@ from xlmc.excel.workbook.inject import result_sheets
 from xlmc.excel.workbook.injection.cell_edit import Content, with_calculation_on_load, with_contents
 from xlmc.excel.workbook.injection.content_types import roles
 from xlmc.excel.workbook.lazy_sheets import with_values
-from xlmc.excel.workbook.package import is_old_workbook
+from xlmc.excel.workbook.other_formats.formats import other_format
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.target import (
@@ -101,7 +101,7 @@ def edited_workbook(model: CompiledModel, scenario: Scenario | str) -> EditedWor
     if left:
         part = roles(parts).workbook
         parts[part] = with_calculation_on_load(parts[part], part)
-    data = checked_bytes(parts, book.parts) if cells or is_old_workbook(book.data) else book.data
+    data = checked_bytes(parts, book.parts) if cells or other_format(book.data) is not None else book.data
     _refuse_difference(
         wanted,
         build_model(read_workbook(data, book.name, book.functions), model.path, python=model.definitions.python),

@@ -8,7 +8,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.workbook.injection.cell_edit import with_calculation_on_load, with_contents
 from xlmc.excel.workbook.injection.content_types import roles
 from xlmc.excel.workbook.injection.formula_values import with_values
-from xlmc.excel.workbook.package import is_old_workbook
+from xlmc.excel.workbook.other_formats.formats import other_format
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.workbook import CellValue, Workbook
 
@@ -46,7 +46,7 @@ def copy_with_values(
         part = roles(parts).workbook
         parts[part] = with_calculation_on_load(parts[part], part)
     changed = typed or computed or unknown
-    return checked_bytes(parts, book.parts) if changed or is_old_workbook(book.data) else book.data
+    return checked_bytes(parts, book.parts) if changed or other_format(book.data) is not None else book.data
 
 
 def _by_sheet(cells: Mapping[Cell, CellValue]) -> dict[str, dict[tuple[int, int], CellValue]]:

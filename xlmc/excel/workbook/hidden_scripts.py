@@ -18,7 +18,7 @@ from xlmc.excel.workbook.structure import Structure
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
-__all__ = ["DamagedDrawing", "HiddenScript", "hidden_scripts"]
+__all__ = ["DamagedDrawing", "HiddenScript", "hidden_scripts", "scripts_of_sheet"]
 
 _OPEN_BREAK: Final = re.compile(rb"<br\s*>", re.IGNORECASE)
 
@@ -54,15 +54,20 @@ def hidden_scripts(parts: Mapping[str, bytes], structure: Structure) -> Iterator
         structure: of its workbook part.
     """
     for entry in structure.worksheets:
-        try:
-            targets = [rel.target for rel in relationships(parts, entry.part).values() if rel.kind == "vmlDrawing"]
-            for target in targets:
-                if target not in parts:
-                    yield DamagedDrawing(entry.name, f"the drawing {target} is missing from the file")
-                elif b"ScriptText" in parts[target] or b"\0" in parts[target][:4]:
-                    yield from _of_drawing(entry.name, _root(parts[target], target))
-        except WorkbookError as error:
-            yield DamagedDrawing(entry.name, error.message)
+        yield from scripts_of_sheet(parts, entry.name, entry.part)
+
+
+def scripts_of_sheet(parts: Mapping[str, bytes], name: str, part: str) -> Iterator[HiddenScript | DamagedDrawing]:
+    """Return the script texts of the worksheet `name`, whose part is `part`, in the order of the file."""
+    try:
+        targets = [rel.target for rel in relationships(parts, part).values() if rel.kind == "vmlDrawing"]
+        for target in targets:
+            if target not in parts:
+                yield DamagedDrawing(name, f"the drawing {target} is missing from the file")
+            elif b"ScriptText" in parts[target] or b"\0" in parts[target][:4]:
+                yield from _of_drawing(name, _root(parts[target], target))
+    except WorkbookError as error:
+        yield DamagedDrawing(name, error.message)
 
 
 def _root(xml: bytes, part: str) -> Element:

@@ -19,6 +19,7 @@ from functools import lru_cache
 from urllib.parse import unquote
 
 from xlmc.errors import WorkbookError
+from xlmc.excel.workbook.other_formats.formats import is_encrypted_package, other_format
 from xlmc.excel.workbook.safe_xml import REPAIR, tree
 
 __all__ = [
@@ -31,11 +32,11 @@ __all__ = [
     "Relationship",
     "content_type",
     "hash_parts",
-    "is_old_workbook",
     "read_parts",
     "relationships",
     "rels_part",
     "stored_part",
+    "unpacked",
 ]
 
 SAVE_AS = "Open it in Excel and save it as an Excel Workbook (.xlsx)"
@@ -46,12 +47,8 @@ CONTENT_TYPES = "[Content_Types].xml"
 WORKBOOKS = (".xlsx", ".xlsm", ".xltx", ".xltm")
 """Endings of workbooks that are packages: plain ones, with macros, and their templates."""
 
-_OLE = bytes.fromhex("D0CF11E0A1B11AE1")
 _ZIP = b"PK"
 _MARKUP = re.compile(rb"<(!doctype|html|\?xml|table|head|meta)")
-_OPEN_DOCUMENT = b"application/vnd.oasis.opendocument.spreadsheet"
-_OPEN_DOCUMENT_HINT = "Open it in LibreOffice or Excel and save it as an Excel Workbook (.xlsx)"
-_ENCRYPTED_STREAM = "EncryptedPackage".encode("utf-16-le")
 _ENCRYPTED_FLAG = 0x1
 _METHODS = (zipfile.ZIP_STORED, zipfile.ZIP_DEFLATED)
 # What zipfile raises on a damaged file.
@@ -86,25 +83,28 @@ class Relationship:
         return self.type.rpartition("/")[2]
 
 
-def is_old_workbook(data: bytes) -> bool:
-    """Whether a file is an old Office file (`.xls`), and no encrypted new one."""
-    return data.startswith(_OLE) and _ENCRYPTED_STREAM not in data
-
-
 def read_parts(data: bytes, limits: Limits = LIMITS) -> dict[str, bytes]:
     """Every part of the package in its order, name -> bytes.
 
     Raises:
-        WorkbookError: not a zip, encrypted, damaged, larger than the limits, or with a name no package may hold.
+        WorkbookError: not a zip, encrypted, damaged, larger than the limits, or with a name no package may hold; or a
+            workbook in another format.
     """
     _check_container(data)
+    return unpacked(data, limits)
+
+
+def unpacked(data: bytes, limits: Limits = LIMITS) -> dict[str, bytes]:
+    """Every part of a zip in its order, name -> bytes, whatever it holds.
+
+    Raises:
+        WorkbookError: damaged, larger than the limits, or with a name no package may hold.
+    """
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as package:
             entries = [entry for entry in package.infolist() if not entry.filename.endswith(("/", "\\"))]
             names = {entry.filename: _with_slashes(entry.filename) for entry in entries}
             _check_entries(entries, limits)
-            if entries and entries[0].filename == "mimetype" and _OPEN_DOCUMENT in data[:256]:
-                raise WorkbookError("the file is an OpenDocument spreadsheet (.ods)", hint=_OPEN_DOCUMENT_HINT)
             return {names[entry.filename]: _unpack(package, entry) for entry in entries}
     except _DAMAGE as error:
         reason = str(error) or "it ends too early"
@@ -175,10 +175,11 @@ def hash_parts(parts: Mapping[str, bytes]) -> str:
 
 
 def _check_container(data: bytes) -> None:
-    if data.startswith(_OLE) and _ENCRYPTED_STREAM in data:
+    if is_encrypted_package(data):
         raise WorkbookError("the workbook is encrypted", hint="Remove its password in Excel (File > Info) and save it")
-    if is_old_workbook(data):
-        raise WorkbookError("the file is an old Excel workbook (.xls)", hint=SAVE_AS)
+    form = other_format(data)
+    if form is not None:
+        raise WorkbookError(f"the file is {form.noun}", hint=form.hint)
     if not data:
         raise WorkbookError("the file is empty", hint="Fetch or copy it again")
     if not data.startswith(_ZIP):

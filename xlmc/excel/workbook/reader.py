@@ -13,13 +13,13 @@ from typing import TYPE_CHECKING, Final
 from xlmc.errors import Notice, WorkbookError
 from xlmc.excel.address import column_number
 from xlmc.excel.workbook.lazy_sheets import LazySheets, naming_file
-from xlmc.excel.workbook.old_format.mark import old_workbook_notices
+from xlmc.excel.workbook.other_formats.formats import other_format
+from xlmc.excel.workbook.other_formats.mark import other_format_notices
 from xlmc.excel.workbook.package import (
     LIMITS,
     SMALLER,
     WORKBOOKS,
     content_type,
-    is_old_workbook,
     read_parts,
     relationships,
 )
@@ -41,7 +41,8 @@ __all__ = ["Links", "linked_files", "read_workbook"]
 def read_workbook(
     source: str | Path | bytes, name: str | None = None, functions: OwnFunctions | None = None
 ) -> Workbook:
-    """Read an `.xlsx` or `.xlsm` file; or an `.xls`, whose cells LibreOffice converts, where it is installed.
+    """Read an `.xlsx` or `.xlsm` file; or an `.xls`, `.xlsb` or `.ods`, whose cells LibreOffice converts, where it is
+    installed.
 
     Nothing in it is run, followed or changed. Sheets are parsed when first looked up, so a damaged sheet complains
     then.
@@ -76,6 +77,7 @@ def _read(data: bytes, name: str, where: str) -> Workbook:
             data_tables=tuple(sheets.data_tables()),
             pivots=pivot_tables(parts, structure.worksheets, structure.date1904),
             date1904=structure.date1904,
+            libreoffice=b"<Application>LibreOffice" in parts.get("docProps/app.xml", b""),
             macintosh=b"Macintosh" in parts.get("docProps/app.xml", b""),
             iteration=iteration_of(structure.calculation),
             may_be_stale=_may_be_stale(structure.calculation),
@@ -88,11 +90,12 @@ def _read(data: bytes, name: str, where: str) -> Workbook:
 
 
 def _parts(data: bytes) -> dict[str, bytes]:
-    if not is_old_workbook(data):
+    form = other_format(data)
+    if form is None:
         return read_parts(data)
-    from xlmc.excel.workbook.old_format.joined_package import parts_of_old_workbook  # few workbooks need it
+    from xlmc.excel.workbook.other_formats.joined_package import parts_of_other_format  # few workbooks need it
 
-    return parts_of_old_workbook(data)
+    return parts_of_other_format(data, form)
 
 
 def _file_bytes(path: Path) -> bytes:
@@ -134,7 +137,7 @@ def _workbook_notices(parts: Mapping[str, bytes], structure: Structure, name: st
     """Notices on the workbook called `name` as a whole."""
     for notice in structure.left_out:
         yield Notice(notice.message, name)
-    yield from (Notice(message, name) for message in old_workbook_notices(parts))
+    yield from (Notice(message, name) for message in other_format_notices(parts))
     for message in (
         *_on_ending(parts, structure, name),
         *_on_calculation(structure.calculation),

@@ -10,7 +10,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.package import WORKBOOKS, is_old_workbook
+from xlmc.excel.workbook.other_formats.formats import FORMATS, other_format
+from xlmc.excel.workbook.package import WORKBOOKS
 from xlmc.excel.workbook.printable import label
 from xlmc.excel.workbook.seal import ENDINGS, read_seal
 from xlmc.excel.workbook.writer import TakenError, check_folder, refuse_if_open
@@ -22,7 +23,7 @@ __all__ = [
     "is_same_file",
     "refuse_existing",
     "refuse_folder",
-    "refuse_into_old_workbook",
+    "refuse_into_other_format",
     "refuse_into_source",
     "refuse_other_ending",
     "refuse_read",
@@ -141,22 +142,20 @@ def refuse_existing(path: Path) -> None:
 
 
 def copy_ending(source: Path) -> str:
-    """Return the ending of what is written of a workbook: its own, and `.xlsx` of an `.xls`."""
-    return ".xlsx" if source.suffix.casefold() == ".xls" else source.suffix
+    """Return the ending of what is written of a workbook: its own, and `.xlsx` of an `.xls`, `.xlsb` or `.ods`."""
+    return ".xlsx" if source.suffix.casefold() in {each.ending for each in FORMATS} else source.suffix
 
 
-def refuse_into_old_workbook(path: Path) -> None:
-    """Refuse to write into an old workbook (`.xls`), whatever it is called: xlmc writes none.
+def refuse_into_other_format(path: Path) -> None:
+    """Refuse to write into a workbook in another format (`.xls`, `.xlsb`, `.ods`), whatever it is called.
 
     Raises:
         WorkbookError: it is one.
     """
-    with path.open("rb") as file:
-        if is_old_workbook(file.read(8)):
-            hint = "Name another file, which ends in .xlsx; or save the workbook as .xlsx in Excel"
-            raise WorkbookError(
-                "this is an old Excel workbook (.xls), and xlmc does not write into it", where=path, hint=hint
-            )
+    form = other_format(path.read_bytes())
+    if form is not None:
+        hint = "Name another file, which ends in .xlsx; or save the workbook as .xlsx"
+        raise WorkbookError(f"this is {form.noun}, and xlmc does not write into it", where=path, hint=hint)
 
 
 def refuse_into_source(path: Path, sha256: str, hint: str) -> None:
@@ -169,9 +168,9 @@ def refuse_into_source(path: Path, sha256: str, hint: str) -> None:
 
     Raises:
         TakenError: a program has it open, or it has changed since it was read.
-        WorkbookError: it is an old workbook (`.xls`).
+        WorkbookError: it is a workbook in another format (`.xls`, `.xlsb`, `.ods`).
     """
-    refuse_into_old_workbook(path)
+    refuse_into_other_format(path)
     refuse_if_open(path)
     if hashlib.sha256(path.read_bytes()).hexdigest() != sha256:
         raise TakenError("the workbook has changed since it was read", where=path, hint=hint)

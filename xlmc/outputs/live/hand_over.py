@@ -151,7 +151,8 @@ def write_changes(state: AtRest, book: Path, *, into: bool) -> str:
 
     Raises:
         TakenError: a program has the workbook open, or it has changed since it was read.
-        WorkbookError: it is an old workbook (`.xls`), into which xlmc does not write; or as for `save_result`.
+        WorkbookError: it is in another format, such as `.xls`, into which xlmc does not write; or as for
+            `save_result`.
         DefinitionError: as for `save_result`.
     """
     edited = edited_state(state.own, state.adjustments, state.name)

@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.excel.own_functions import OwnFunctions
-from xlmc.excel.workbook.package import is_old_workbook
+from xlmc.excel.workbook.other_formats.formats import other_format
 from xlmc.excel.workbook.printable import printable
 from xlmc.excel.workbook.target import refuse_existing, unused_path
 from xlmc.excel.workbook.writer import write_workbook
@@ -24,7 +24,7 @@ from xlmc.outputs.live.stored_scenarios import Keeper
 
 __all__ = ["Library", "Sample"]
 
-_ENDINGS: Final = (".xlsx", ".xlsm", ".xls")
+_ENDINGS: Final = (".xlsx", ".xlsm", ".xls", ".xlsb", ".ods")
 _MOST_LISTED: Final = 500
 _LONGEST: Final = 120
 _DEVICE: Final = re.compile(r"(?i)(con|prn|aux|nul|com\d|lpt\d)(\.|$)")
@@ -145,8 +145,8 @@ class Library:
             WorkbookError: it is no workbook, or cannot be written.
         """
         plain = re.sub(r"[^\w .()+-]", "_", name.replace("\\", "/").rpartition("/")[2]).strip(" .")[-_LONGEST:]
-        if not plain.casefold().endswith(_ENDINGS) or not (data[:2] == b"PK" or is_old_workbook(data)):
-            hint = "drop a workbook whose name ends in .xlsx, .xlsm or .xls"
+        if not plain.casefold().endswith(_ENDINGS) or not (data[:2] == b"PK" or other_format(data) is not None):
+            hint = "drop a workbook whose name ends in .xlsx, .xlsm, .xls, .xlsb or .ods"
             raise WorkbookError("this is not an Excel workbook", where=printable(plain) or None, hint=hint)
         folder = self.keeper.dropped / secrets.token_hex(8)
         target = folder / (f"_{plain}" if _DEVICE.match(plain) else plain)

@@ -1,4 +1,4 @@
-"""LibreOffice, which converts the cells of an old Excel workbook, where it is installed.
+"""LibreOffice, which converts the cells of a workbook in another format, where it is installed.
 
 It gets a copy of the file in a folder of its own, and a profile that runs no macro and follows no link.
 """
@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 from typing import Final
 
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.old_format.old_stream import IN_CRYSTAL_BALL
+from xlmc.excel.workbook.other_formats.formats import OtherFormat
 
 __all__ = ["converted_to_xlsx"]
 
@@ -40,7 +40,7 @@ _PROFILE: Final = """<?xml version="1.0" encoding="UTF-8"?>
 """Settings: run no macro, and never update links (2)."""
 
 
-def converted_to_xlsx(data: bytes) -> bytes:
+def converted_to_xlsx(data: bytes, form: OtherFormat) -> bytes:
     """Convert the file with LibreOffice to `.xlsx`.
 
     Raises:
@@ -49,25 +49,24 @@ def converted_to_xlsx(data: bytes) -> bytes:
     program = _program()
     if program is None:
         message = (
-            "the file is an old Excel workbook (.xls), which xlmc reads with the help of LibreOffice, and LibreOffice "
-            "is not installed"
+            f"the file is {form.noun}, which xlmc reads with the help of LibreOffice, and LibreOffice is not installed"
         )
-        raise WorkbookError(message, hint=f"Install LibreOffice (libreoffice.org). Or: {IN_CRYSTAL_BALL}")
+        raise WorkbookError(message, hint=f"Install LibreOffice (libreoffice.org). Or: {form.hint}")
     try:
         with TemporaryDirectory(prefix="xlmc-", ignore_cleanup_errors=True) as folder:
-            old, new = Path(folder, "book.xls"), Path(folder, "book.xlsx")
+            old, new = Path(folder, f"book{form.ending}"), Path(folder, "book.xlsx")
             old.write_bytes(data)
             settings = Path(folder, "profile", "user", "registrymodifications.xcu")
             settings.parent.mkdir(parents=True)
             settings.write_text(_PROFILE, encoding="utf-8")
-            output = _run(program, folder, old)
+            output = _run(program, folder, old, form)
             if new.is_file():
                 return new.read_bytes()
     except OSError as error:
-        message = f"the old Excel workbook (.xls) cannot be converted by LibreOffice: {error.strerror or error}"
+        message = f"{form.name} cannot be converted by LibreOffice: {error.strerror or error}"
         raise WorkbookError(message, hint="Free space on the disk that temporary files go to, and try again") from error
-    message = f"LibreOffice could not convert the old Excel workbook (.xls){f' ({output})' if output else ''}"
-    raise WorkbookError(message, hint=IN_CRYSTAL_BALL)
+    message = f"LibreOffice could not convert {form.name}{f' ({output})' if output else ''}"
+    raise WorkbookError(message, hint=form.hint)
 
 
 def _program() -> str | None:
@@ -76,7 +75,7 @@ def _program() -> str | None:
     return next((each for each in (*found, *there) if each), None)
 
 
-def _run(program: str, folder: str, old: Path) -> str:
+def _run(program: str, folder: str, old: Path, form: OtherFormat) -> str:
     """Run it to its end; the last line that it wrote.
 
     Raises:
@@ -95,12 +94,12 @@ def _run(program: str, folder: str, old: Path) -> str:
         )
     except OSError as error:
         message = f"LibreOffice ({program}) cannot be started: {error.strerror or error}"
-        raise WorkbookError(message, hint=IN_CRYSTAL_BALL) from error
+        raise WorkbookError(message, hint=form.hint) from error
     try:
         _, output = process.communicate(timeout=_SECONDS)
     except subprocess.TimeoutExpired:
-        message = f"LibreOffice has not converted the old Excel workbook (.xls) in {_SECONDS // 60} minutes"
-        raise WorkbookError(message, hint=IN_CRYSTAL_BALL) from None
+        message = f"LibreOffice has not converted {form.name} in {_SECONDS // 60} minutes"
+        raise WorkbookError(message, hint=form.hint) from None
     finally:
         if process.returncode is None:
             _end(process)

@@ -1,4 +1,4 @@
-"""An old Excel workbook (`.xls`) as the parts of an `.xlsx`: cells by LibreOffice, with what it drops put back.
+"""A workbook in another format as the parts of an `.xlsx`: cells by LibreOffice, with what it drops put back.
 
 These are hidden texts of shapes, which go into legacy drawings as Excel itself writes them; and the last digits of
 numbers. What both have read must agree, or the file is refused.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from html import escape
 from typing import Final, TypeGuard
 
@@ -18,15 +18,18 @@ from xlmc.excel.workbook.injection.content_types import add_types
 from xlmc.excel.workbook.injection.formula_values import with_values
 from xlmc.excel.workbook.injection.splice import OFFICE_RELATIONSHIPS, SplicedXml, render
 from xlmc.excel.workbook.lazy_sheets import LazySheets
-from xlmc.excel.workbook.old_format.libreoffice import converted_to_xlsx
-from xlmc.excel.workbook.old_format.mark import with_mark
-from xlmc.excel.workbook.old_format.old_stream import IN_CRYSTAL_BALL, OldSheet, Position, read_old_workbook
-from xlmc.excel.workbook.old_format.shape_texts import ShapeText
-from xlmc.excel.workbook.package import CONTENT_TYPES, read_parts, relationships, rels_part
+from xlmc.excel.workbook.other_formats.binary_workbook import read_binary_workbook
+from xlmc.excel.workbook.other_formats.formats import ODS, XLSB, OtherFormat
+from xlmc.excel.workbook.other_formats.libreoffice import converted_to_xlsx
+from xlmc.excel.workbook.other_formats.mark import with_mark
+from xlmc.excel.workbook.other_formats.old_workbook import OldBook, OldSheet, Position, read_old_workbook
+from xlmc.excel.workbook.other_formats.open_document import read_open_document
+from xlmc.excel.workbook.other_formats.shape_texts import ShapeText
+from xlmc.excel.workbook.package import CONTENT_TYPES, read_parts, relationships, rels_part, unpacked
 from xlmc.excel.workbook.structure import SheetEntry, read_structure
 from xlmc.excel.workbook.workbook import CellContent, CellValue
 
-__all__ = ["parts_of_old_workbook"]
+__all__ = ["parts_of_other_format"]
 
 _CLOSE: Final = 1e-13
 """Relative difference of numbers that are the same to 15 digits."""
@@ -56,25 +59,44 @@ _PICTURE: Final = (
 )
 
 
-def parts_of_old_workbook(data: bytes) -> dict[str, bytes]:
+def parts_of_other_format(data: bytes, form: OtherFormat) -> dict[str, bytes]:
     """Return the parts of the workbook, with a mark from which a reader says what they come from: see `mark`.
 
     Args:
         data: the file.
+        form: its format.
 
     Raises:
         WorkbookError: the file cannot be read, LibreOffice cannot convert it, or both read different cells.
     """
-    old = read_old_workbook(data)
-    parts = read_parts(converted_to_xlsx(data))
+    try:
+        return _joined(_read(data, form), converted_to_xlsx(data, form), form)
+    except _DifferenceError as error:
+        raise WorkbookError(error.message, where=error.where, hint=form.hint) from None
+
+
+class _DifferenceError(WorkbookError):
+    """What LibreOffice gives is not what the file holds; the hint is that of the format."""
+
+
+def _read(data: bytes, form: OtherFormat) -> OldBook:
+    readers: dict[OtherFormat, Callable[[dict[str, bytes]], OldBook]] = {
+        XLSB: read_binary_workbook,
+        ODS: read_open_document,
+    }
+    return readers[form](unpacked(data)) if form in readers else read_old_workbook(data)
+
+
+def _joined(old: OldBook, converted: bytes, form: OtherFormat) -> dict[str, bytes]:
+    parts = read_parts(converted)
     structure = read_structure(parts)
     entries = {entry.name: entry for entry in structure.worksheets}
     sheets = LazySheets("the converted workbook", parts, structure)
     for number, sheet in enumerate(old.sheets, 1):
         entry = entries.get(sheet.name)
         if entry is None:
-            raise _refusal(f"LibreOffice has lost the sheet {sheet.name!r}")
-        exact = _exact(sheet, sheets[sheet.name].cells)
+            raise _DifferenceError(f"LibreOffice has lost the sheet {sheet.name!r}")
+        exact = _exact(sheet, sheets[sheet.name].cells, old.tells_logicals)
         if exact:
             parts[entry.part] = with_values(parts[entry.part], entry.part, exact)
         if sheet.texts:
@@ -82,7 +104,7 @@ def parts_of_old_workbook(data: bytes) -> dict[str, bytes]:
     settings = {"fullPrecision": "0"} if old.as_displayed else {}
     settings |= {"calcMode": "manual"} if old.manual else {}
     parts[structure.part] = _with_calculation(parts[structure.part], structure.part, settings)
-    return with_mark(parts, old.macros)
+    return with_mark(parts, form, old.macros)
 
 
 def _with_calculation(xml: bytes, part: str, settings: Mapping[str, str]) -> bytes:
@@ -96,13 +118,15 @@ def _with_calculation(xml: bytes, part: str, settings: Mapping[str, str]) -> byt
     document = SplicedXml(xml, part)
     element = document.root.find("calcPr")
     if element is None:
-        raise _refusal("LibreOffice has lost how the workbook is calculated")
+        raise _DifferenceError("LibreOffice has lost how the workbook is calculated")
     for name, value in settings.items():
         document.set(element, name, value)
     return document.result()
 
 
-def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Position, float | bool]:
+def _exact(
+    sheet: OldSheet, cells: Mapping[Position, CellContent], tells_logicals: bool
+) -> dict[Position, float | bool]:
     """Return the numbers of cells that LibreOffice has shortened, and the results of formulas as Excel saved them.
 
     Raises:
@@ -119,15 +143,19 @@ def _exact(sheet: OldSheet, cells: Mapping[Position, CellContent]) -> dict[Posit
             or not math.isclose(value, number, rel_tol=_CLOSE, abs_tol=0.0)
         ):
             where = Cell(sheet.name, *position)
-            raise _refusal(f"LibreOffice has made {_words(content)} of the number {number!r}", where)
+            raise _DifferenceError(f"LibreOffice has made {_words(content)} of the number {number!r}", where=where)
         if value != number:
             found[position] = number
     filled = _positions(sheet)
     for position, number in sheet.results.items():
         content = cells.get(position)
         if content is None or (content.formula is None and position not in filled):
-            raise _refusal("LibreOffice has lost the formula of the cell", Cell(sheet.name, *position))
-        same_kind = isinstance(content.value, bool) if isinstance(number, bool) else _is_number(content.value)
+            raise _DifferenceError("LibreOffice has lost the formula of the cell", where=Cell(sheet.name, *position))
+        same_kind = (
+            not tells_logicals or isinstance(content.value, bool)
+            if isinstance(number, bool)
+            else _is_number(content.value)
+        )
         if not (same_kind and content.value == number) and math.isfinite(number):
             found[position] = number
     return found
@@ -156,17 +184,13 @@ def _positions(sheet: OldSheet) -> set[Position]:
     areas = [area for area in sheet.areas if area[:2] != area[2:]]  # a cell alone keeps its formula
     sizes = (max(bottom - top + 1, 0) * max(right - left + 1, 0) for top, left, bottom, right in areas)
     if sum(sizes) > _MOST_FILLED:
-        raise _refusal(f"the array formulas of the sheet {sheet.name!r} fill too many cells")
+        raise _DifferenceError(f"the array formulas of the sheet {sheet.name!r} fill too many cells")
     return {
         (row, column)
         for top, left, bottom, right in areas
         for row in range(top, bottom + 1)
         for column in range(left, right + 1)
     }
-
-
-def _refusal(message: str, where: object = None) -> WorkbookError:
-    return WorkbookError(message, where=where, hint=IN_CRYSTAL_BALL)
 
 
 def _put_texts(parts: dict[str, bytes], entry: SheetEntry, texts: Iterable[ShapeText], number: int) -> None:

@@ -16,15 +16,11 @@ from typing import Final
 import olefile
 
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.old_format.shape_texts import ShapeText, shape_texts
+from xlmc.excel.workbook.other_formats.formats import XLS
+from xlmc.excel.workbook.other_formats.shape_texts import ShapeText, shape_texts
 from xlmc.excel.workbook.package import SAVE_AS
 
-__all__ = ["IN_CRYSTAL_BALL", "OldBook", "OldSheet", "Position", "read_old_workbook"]
-
-IN_CRYSTAL_BALL: Final = (
-    "Open it in Excel and save it as an Excel Workbook (.xlsx); if it was made with Crystal Ball, load Crystal Ball "
-    "first, or its definitions are lost"
-)
+__all__ = ["OldBook", "OldSheet", "Position", "read_old_workbook", "short_number"]
 
 _MACROS: Final = "_VBA_PROJECT_CUR"
 
@@ -76,12 +72,14 @@ class OldBook:
         macros: whether there are any.
         as_displayed: Excel calculates with the digits that are shown.
         manual: Excel calculates when it is asked to.
+        tells_logicals: whether the file tells TRUE from 1 among the results of formulas.
     """
 
     sheets: tuple[OldSheet, ...]
     macros: bool
     as_displayed: bool
     manual: bool
+    tells_logicals: bool = True
 
 
 def read_old_workbook(data: bytes) -> OldBook:
@@ -108,13 +106,13 @@ def _stream(data: bytes) -> tuple[bytes, bool]:
     except Exception as error:  # olefile promises no kind of error for a damaged file
         raise _damaged(str(error) or type(error).__name__) from error
     if "book" in names:
-        raise WorkbookError("the file is a workbook of Excel 95 or older (.xls)", hint=IN_CRYSTAL_BALL)
+        raise WorkbookError("the file is a workbook of Excel 95 or older (.xls)", hint=XLS.hint)
     raise WorkbookError("the file is an old Office file, but not a workbook", hint=SAVE_AS)
 
 
 def _damaged(reason: str) -> WorkbookError:
-    hint = f"Fetch or copy it again. {IN_CRYSTAL_BALL}"
-    return WorkbookError(f"the file is an old Excel workbook (.xls), and it is damaged: {reason}", hint=hint)
+    hint = f"Fetch or copy it again. {XLS.hint}"
+    return WorkbookError(f"the file is {XLS.noun}, and it is damaged: {reason}", hint=hint)
 
 
 class _Reading:
@@ -170,7 +168,7 @@ class _Reading:
 
     def _begin(self, at: int, data: bytes, first: bool) -> None:
         if struct.unpack_from("<H", data)[0] != _BIFF8:
-            raise WorkbookError("the file is a workbook of Excel 95 or older (.xls)", hint=IN_CRYSTAL_BALL)
+            raise WorkbookError("the file is a workbook of Excel 95 or older (.xls)", hint=XLS.hint)
         self._sheet = None if first else self._starts.get(at)
         self._last = _BEGIN
 
@@ -223,12 +221,12 @@ def _take_cells(sheet: OldSheet, kind: int, data: bytes) -> None:
         sheet.numbers[row + 1, column + 1] = number
     elif kind == _SHORT:
         row, column, _, short = struct.unpack_from("<HHHI", data)
-        sheet.numbers[row + 1, column + 1] = _short_number(short)
+        sheet.numbers[row + 1, column + 1] = short_number(short)
     elif kind == _MANY_SHORT:
         row, column = struct.unpack_from("<HH", data)
         for offset, at in enumerate(range(4, len(data) - 2, 6)):
             (short,) = struct.unpack_from("<I", data, at + 2)
-            sheet.numbers[row + 1, column + 1 + offset] = _short_number(short)
+            sheet.numbers[row + 1, column + 1 + offset] = short_number(short)
     elif kind == _FORMULA:
         row, column, _, value = struct.unpack_from("<HHH8s", data)
         if value[6:] != _NO_NUMBER:
@@ -240,7 +238,7 @@ def _take_cells(sheet: OldSheet, kind: int, data: bytes) -> None:
         sheet.areas.append((top + 1, left + 1, bottom + 1, right + 1))
 
 
-def _short_number(short: int) -> float:
+def short_number(short: int) -> float:
     """Read a number in 30 bits: a whole one, or the first bits of a float; both perhaps times 100."""
     if short & 2:
         whole = short >> 2

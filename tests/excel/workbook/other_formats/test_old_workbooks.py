@@ -22,8 +22,8 @@ from xlmc.api import Simulation
 from xlmc.cli import xlmc as command
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.hidden_scripts import HiddenScript, hidden_scripts
-from xlmc.excel.workbook.old_format import joined_package, libreoffice
-from xlmc.excel.workbook.old_format.old_stream import read_old_workbook
+from xlmc.excel.workbook.other_formats import joined_package, libreoffice
+from xlmc.excel.workbook.other_formats.old_workbook import read_old_workbook
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.structure import read_structure
 from xlmc.montecarlo.model.loading import load
@@ -129,7 +129,7 @@ def test_digits_and_texts_come_back(monkeypatch):
     records = b"".join(number(*at, value) for at, value in exact.items())
     records += record(0x06, struct.pack("<HHHdHIH", 3, 0, 0, 2 / 3, 0, 0, 0)) + drawing(SHAPES)
     new = converted({"A1": 0.3, "A2": 5.46468300338232e-21, "A3": 7, "A4": "=A1/A3"})
-    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda _: new)
+    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda *_: new)
     book = read_workbook(plain_book({"S": records}, macros=True), "case.xls")
     cells = book.sheets["S"].cells
     assert {at: cells[at].value for at in exact} == exact
@@ -150,7 +150,7 @@ def test_the_results_of_formulas_are_those_that_excel_saved(monkeypatch, tmp_pat
     parts[sheet] = old.sub(b'<c r="A1" t="e"><f>RiskNormal(5,1)</f><v>#NAME?</v></c>', parts[sheet])
     assert b"#NAME?" in parts[sheet]
     write_parts(path, parts)
-    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda _: path.read_bytes())
+    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda *_: path.read_bytes())
     results = (struct.pack("<HHHdHIH", row, 0, 0, value, 0, 0, 0) for row, value in enumerate((5.0, 6.0)))
     data = plain_book({"S": b"".join(record(0x06, each) for each in results)})
     cells = read_workbook(data, "case.xls").sheets["S"].cells
@@ -163,7 +163,7 @@ def test_a_logical_that_a_formula_gives_is_one(monkeypatch, tmp_path, saved):
     """LibreOffice writes 1 or 0 for a formula that gives one."""
     path = tmp_path / "converted.xlsx"
     path.write_bytes(converted({"A1": "=2>1", "A2": "=1"}))
-    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda _: path.read_bytes())
+    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda *_: path.read_bytes())
     logical = struct.pack("<HHH8sHIH", 0, 0, 0, bytes([1, 0, saved, 0, 0, 0, 0xFF, 0xFF]), 0, 0, 0)
     number_ = struct.pack("<HHHdHIH", 1, 0, 0, 1.0, 0, 0, 0)
     data = plain_book({"S": record(0x06, logical) + record(0x06, number_)})
@@ -200,7 +200,7 @@ DIFFERENT = {
 
 @pytest.mark.parametrize(("records", "cells", "titles", "sentence"), DIFFERENT.values(), ids=DIFFERENT)
 def test_what_both_read_must_agree(records, cells, titles, sentence, monkeypatch):
-    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda _: converted(cells, titles))
+    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda *_: converted(cells, titles))
     with pytest.raises(WorkbookError) as reported:
         read_workbook(plain_book({"S": records}), "case.xls")
     assert sentence in str(reported.value)
@@ -276,7 +276,7 @@ def test_a_workbook_of_crystal_ball_gives_the_draws_of_its_xlsx(tmp_path):
 
 
 def test_how_excel_calculates_is_told(monkeypatch):
-    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda _: converted({}))
+    monkeypatch.setattr(joined_package, "converted_to_xlsx", lambda *_: converted({}))
     data = plain_book({"S": record(0x0D, b"\0\0")}, before=record(0x0E, b"\0\0"))
     notices = [each.message for each in read_workbook(data, "case.xls").notices]
     assert any("precision as displayed" in each for each in notices)

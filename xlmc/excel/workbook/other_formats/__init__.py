@@ -1,0 +1,1 @@
+"""Workbooks in other formats (`.xls`, `.xlsb`, `.ods`): LibreOffice converts, xlmc reads what it drops or shortens."""

@@ -1,0 +1,42 @@
+"""The mark of a workbook whose cells LibreOffice converted from another format; results written into it leave it."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from typing import Final
+
+from xlmc.excel.workbook.other_formats.formats import FORMATS, OtherFormat
+
+__all__ = ["other_format_notices", "with_mark"]
+
+_PROPERTIES: Final = "docProps/core.xml"
+"""The part that holds the mark, as a comment. xlmc keeps it; a program that saves the workbook drops the mark."""
+
+_SAID: Final = "xlmc: converted from"
+_MACROS: Final = ", without its macros"
+_MARK: Final = re.compile(
+    rb"<!--%b (?P<what>%b) by (?P<by>LibreOffice[/\d.]*)(?P<macros>%b)?-->"
+    % (_SAID.encode(), b"|".join(re.escape(each.noun.encode()) for each in FORMATS), _MACROS.encode())
+)
+_VERSION: Final = re.compile(rb"<Application>(LibreOffice/[\d.]+)")
+
+
+def with_mark(parts: Mapping[str, bytes], form: OtherFormat, macros: bool) -> dict[str, bytes]:
+    """Return the parts with the mark: the format, the LibreOffice that wrote them, and whether macros were left out."""
+    if _PROPERTIES not in parts:
+        return dict(parts)
+    by = _VERSION.search(parts.get("docProps/app.xml", b""))
+    mark = f"<!--{_SAID} {form.noun} by {by[1].decode() if by else 'LibreOffice'}{_MACROS * macros}-->"
+    return {**parts, _PROPERTIES: parts[_PROPERTIES] + mark.encode()}
+
+
+def other_format_notices(parts: Mapping[str, bytes]) -> Iterator[str]:
+    """Return the notices about a workbook that LibreOffice converted, also of one with results in it."""
+    found = _MARK.search(parts.get(_PROPERTIES, b""))
+    if found is not None:
+        by = found["by"].decode().replace("/", " ")
+        form = next(each for each in FORMATS if each.noun == found["what"].decode())
+        yield f"the cells were converted from {form.noun} by {by}; xlmc verify compares the formulas with {form.saved}"
+        if found["macros"]:
+            yield f"the macros of {form.name} are left out of what xlmc writes"

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 
 from xlmc.excel.address import Cell
+from xlmc.excel.workbook.formats import other_format
 from xlmc.excel.workbook.injection.cell_edit import with_calculation_on_load, with_contents
 from xlmc.excel.workbook.injection.content_types import roles
 from xlmc.excel.workbook.injection.formula_values import with_values
-from xlmc.excel.workbook.other_formats.formats import other_format
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.workbook import CellValue, Workbook
 

@@ -19,7 +19,7 @@ from functools import lru_cache
 from urllib.parse import unquote
 
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.other_formats.formats import is_encrypted_package, other_format
+from xlmc.excel.workbook.formats import is_encrypted_package, other_format
 from xlmc.excel.workbook.safe_xml import REPAIR, tree
 
 __all__ = [

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import Notice, WorkbookError
 from xlmc.excel.address import column_number
+from xlmc.excel.workbook.formats import other_format
 from xlmc.excel.workbook.lazy_sheets import LazySheets, naming_file
-from xlmc.excel.workbook.other_formats.formats import other_format
 from xlmc.excel.workbook.other_formats.mark import other_format_notices
 from xlmc.excel.workbook.package import (
     LIMITS,

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.other_formats.formats import FORMATS, other_format
+from xlmc.excel.workbook.formats import FORMATS, other_format
 from xlmc.excel.workbook.package import WORKBOOKS
 from xlmc.excel.workbook.printable import label
 from xlmc.excel.workbook.seal import ENDINGS, read_seal

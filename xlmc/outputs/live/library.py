@@ -16,7 +16,7 @@ from typing import Any, Final
 
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.excel.own_functions import OwnFunctions
-from xlmc.excel.workbook.other_formats.formats import other_format
+from xlmc.excel.workbook.formats import other_format
 from xlmc.excel.workbook.printable import printable
 from xlmc.excel.workbook.target import refuse_existing, unused_path
 from xlmc.excel.workbook.writer import write_workbook

@@ -17,9 +17,9 @@ from needed_programs import missing
 
 from xlmc.cli import xlmc as command
 from xlmc.errors import WorkbookError
+from xlmc.excel.workbook.formats import ODS, XLS, XLSB, other_format
 from xlmc.excel.workbook.hidden_scripts import HiddenScript, hidden_scripts
 from xlmc.excel.workbook.other_formats import joined_package, libreoffice
-from xlmc.excel.workbook.other_formats.formats import ODS, XLS, XLSB, other_format
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.structure import read_structure
 from xlmc.excel.workbook.target import copy_ending

@@ -13,8 +13,8 @@ from collections.abc import Iterator, Mapping
 from typing import Final
 
 from xlmc.errors import WorkbookError
+from xlmc.excel.workbook.formats import XLSB
 from xlmc.excel.workbook.hidden_scripts import DamagedDrawing, scripts_of_sheet
-from xlmc.excel.workbook.other_formats.formats import XLSB
 from xlmc.excel.workbook.other_formats.old_workbook import OldBook, OldSheet, short_number
 from xlmc.excel.workbook.other_formats.shape_texts import ShapeText
 from xlmc.excel.workbook.package import relationships

@@ -14,12 +14,12 @@ from typing import Final, TypeGuard
 
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.address import Cell
+from xlmc.excel.workbook.formats import ODS, XLSB, OtherFormat
 from xlmc.excel.workbook.injection.content_types import add_types
 from xlmc.excel.workbook.injection.formula_values import with_values
 from xlmc.excel.workbook.injection.splice import OFFICE_RELATIONSHIPS, SplicedXml, render
 from xlmc.excel.workbook.lazy_sheets import LazySheets
 from xlmc.excel.workbook.other_formats.binary_workbook import read_binary_workbook
-from xlmc.excel.workbook.other_formats.formats import ODS, XLSB, OtherFormat
 from xlmc.excel.workbook.other_formats.libreoffice import converted_to_xlsx
 from xlmc.excel.workbook.other_formats.mark import with_mark
 from xlmc.excel.workbook.other_formats.old_workbook import OldBook, OldSheet, Position, read_old_workbook

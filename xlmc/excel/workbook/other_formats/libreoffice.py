@@ -15,7 +15,7 @@ from tempfile import TemporaryDirectory
 from typing import Final
 
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.other_formats.formats import OtherFormat
+from xlmc.excel.workbook.formats import OtherFormat
 
 __all__ = ["converted_to_xlsx"]
 

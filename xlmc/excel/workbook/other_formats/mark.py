@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Mapping
 from typing import Final
 
-from xlmc.excel.workbook.other_formats.formats import FORMATS, OtherFormat
+from xlmc.excel.workbook.formats import FORMATS, OtherFormat
 
 __all__ = ["other_format_notices", "with_mark"]
 

@@ -16,7 +16,7 @@ from typing import Final
 import olefile
 
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.other_formats.formats import XLS
+from xlmc.excel.workbook.formats import XLS
 from xlmc.excel.workbook.other_formats.shape_texts import ShapeText, shape_texts
 from xlmc.excel.workbook.package import SAVE_AS
 

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.other_formats.formats import ODS
+from xlmc.excel.workbook.formats import ODS
 from xlmc.excel.workbook.other_formats.old_workbook import OldBook, OldSheet
 from xlmc.excel.workbook.safe_xml import tree, whole_number
 

@@ -68,7 +68,9 @@ class Menu(unohelper.Base, XJobExecutor):
             raise RefusedError(notices or said)
         path = Path(self._book().parent, results[1])
         hidden = tuple(each for each in self.document.getArgs() if each.Name == "Hidden")  # as the workbook itself
-        self.desktop.loadComponentFromURL(path.as_uri(), "_blank", 0, hidden)
+        opened = self.desktop.loadComponentFromURL(path.as_uri(), "_blank", 0, hidden)
+        added = [each for each in opened.getSheets() if not self.document.getSheets().hasByName(each.getName())]
+        opened.getCurrentController().setActiveSheet(added[0])
         if notices:
             self._show(notices, INFOBOX)
 

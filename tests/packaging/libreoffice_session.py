@@ -2,9 +2,9 @@
 
     python libreoffice_session.py PIPE EXTENSION.PY ENTRY BOOK [--installed]
 
-opens BOOK, chooses an entry of the menu, and prints as JSON the messages, the cell that is selected, and the titles of
-all workbooks that are open then. With `--installed` the entry is called as a click in the menu calls it. The entry
-`install` installs the package BOOK, as LibreOffice's list of extensions does.
+opens BOOK, chooses an entry of the menu, and prints as JSON the messages, the cell that is selected, and the workbooks
+that are open then, with the sheet in front of each. With `--installed` the entry is called as a click in the menu calls
+it. The entry `install` installs the package BOOK, as LibreOffice's list of extensions does.
 """
 
 import importlib.util
@@ -96,7 +96,11 @@ def main(pipe, extension, entry, book, *options):
         "shown": shown,
         "selected": "" if document is None else document.getCurrentSelection().AbsoluteName,
         "modified": document is not None and document.isModified(),
-        "opened": [each.getTitle() for each in desktop.getComponents() if hasattr(each, "getSheets")],
+        "opened": {
+            each.getTitle(): each.getCurrentController().getActiveSheet().getName()
+            for each in desktop.getComponents()
+            if hasattr(each, "getSheets")
+        },
     }
     print(json.dumps(found))
     for each in list(desktop.getComponents()):

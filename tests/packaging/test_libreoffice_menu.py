@@ -80,7 +80,7 @@ def book(tmp_path):
 
 def test_simulate_opens_the_workbook_with_the_results(office, book):
     found = office("simulate", book, "--installed")
-    assert set(found["opened"]) == {"my case.xlsx", "my case-results.xlsx"}
+    assert found["opened"] == {"my case.xlsx": "Inputs", "my case-results.xlsx": "Results"}
     assert "Results" in openpyxl.load_workbook(book.with_name("my case-results.xlsx"), read_only=True).sheetnames
 
 

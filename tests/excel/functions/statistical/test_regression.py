@@ -138,6 +138,12 @@ def test_several_variables_are_predicted_in_columns_and_rows(evaluate):
     same(evaluate("TREND", turned(Y), turned(X), turned(new)), turned(expected), 1e-9)
 
 
+def test_two_variables_are_predicted_together(evaluate):
+    x, y = [[1, 5], [2, 3], [4, 4], [7, 1]], [[2 + 3 * a - 4 * b] for a, b in [(1, 5), (2, 3), (4, 4), (7, 1)]]
+    same(evaluate("TREND", y, x, [[3, 2], [5, 5]]), [[3.0], [-3.0]], 1e-12)
+    same(evaluate("TREND", turned(y), turned(x), [[3, 5], [2, 5]]), [[3.0, -3.0]], 1e-12)
+
+
 def test_a_shape_that_differs_between_trials_is_asked_for_trial_by_trial(value):
     stats = Value.of_logicals(np.array([True, False]))
     with pytest.raises(ShapeVaries):

@@ -15,6 +15,7 @@ import time
 
 import openpyxl
 from openpyxl.worksheet.table import Table
+from websockets.exceptions import ConnectionClosed
 
 from xlmc.errors import XlmcError
 from xlmc.excel.workbook.reader import read_workbook
@@ -22,6 +23,9 @@ from xlmc.montecarlo.model.loading import build_model, load
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.outputs.live.hand_over import edited_state
 from xlmc.outputs.live.stored_scenarios import Keeper
+
+TOO_LATE = 4408
+"""Why a connection is closed whose page did not say in time who it is."""
 
 PATIENCE = 120.0
 """Seconds after which a window counts as stuck."""
@@ -191,8 +195,15 @@ class Use:
         self.compared = 0
 
     def _client(self):
+        """Open a window; as a page does, try again where this machine was too busy to say hello in time."""
         stack = contextlib.ExitStack()
-        window = stack.enter_context(self.server.window(self.server.library.only))
+        for left in range(3, -1, -1):
+            try:
+                window = stack.enter_context(self.server.window(self.server.library.only))
+                break
+            except ConnectionClosed as closed:
+                if not left or closed.rcvd is None or closed.rcvd.code != TOO_LATE:
+                    raise
         window.stack = stack
         window.next("state")
         return window

@@ -14,10 +14,12 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 from committed_books import TEMPLATES
 from live_books import SIMPLE, change, small
+from random_use import TOO_LATE
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from xlmc.errors import XlmcError
 from xlmc.excel.workbook.writer import TakenError
+from xlmc.outputs.live import server as live_server
 from xlmc.outputs.live.guard import MOST_UPLOADED, SECRET, Guard, proof
 from xlmc.outputs.live.library import Library, Sample
 from xlmc.outputs.live.protocol import MOST_BYTES
@@ -165,6 +167,15 @@ def test_a_websocket_must_first_say_hello(open_book, first):
         window.socket.send(first)
         with pytest.raises(ConnectionClosed):
             window.socket.recv(timeout=120)
+
+
+def test_a_page_that_is_late_may_try_again(open_book, monkeypatch):
+    """Its machine slept, or is busy: it is not told what a page is told that this server does not know."""
+    monkeypatch.setattr(live_server, "_HELLO_SECONDS", 0.05)
+    late = open_book.window(open_book.library.only, entering=False)
+    with late as window, pytest.raises(ConnectionClosed) as closed:
+        window.socket.recv(timeout=120)
+    assert closed.value.rcvd.code == TOO_LATE
 
 
 def test_what_no_page_says_ends_the_connection_and_nothing_else(open_book):

@@ -20,6 +20,7 @@ from xlmc.montecarlo.distributions.base import Member
 from xlmc.montecarlo.distributions.parameters import Fault
 from xlmc.montecarlo.distributions.truncated import Slice
 from xlmc.montecarlo.distributions.uniform import Uniform
+from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.sampling.copula import Ties, ties_of
 from xlmc.montecarlo.sampling.copulas import Joining
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
@@ -244,6 +245,7 @@ class Sampler:
             self._filling(start)
             return
         for margin, row, (offset, factor) in zip(self._margins, self._rows, self._maps, strict=True):
+            checkpoint()
             margin.uniforms(start, row)
             if (offset, factor) != (0.0, 1.0):
                 np.multiply(row, factor, out=row)
@@ -282,6 +284,7 @@ class Sampler:
             for draw in stage.draws:
                 drawn[draw.name] = self._rows[self._row_of[draw.name]]
                 if draw.name not in self._filled:
+                    checkpoint()
                     draw.fill(drawn[draw.name], known)
                     draw.refuse_no_numbers(drawn[draw.name])
         return drawn

@@ -140,9 +140,9 @@ class Adjustments:
         for name, given in self.filters.items():
             if given.get("used", definitions.is_used(name)):
                 found = found._with("filter", name, {key: value for key, value in given.items() if key != "used"})
-        for assumption in definitions.assumptions:
-            given = self.assumptions.get(assumption.name, {})
-            if not given.get("frozen", assumption.frozen):
+        for assumption in definitions.assumptions if self.assumptions else ():
+            given = self.assumptions.get(assumption.name)
+            if given and not given.get("frozen", assumption.frozen):
                 own = {key: value for key, value in given.items() if key not in ("frozen", "base")}
                 found = found._with("assumption", assumption.name, own)
         return found

@@ -26,7 +26,7 @@ from xlmc.montecarlo.statistics import (
 )
 from xlmc.montecarlo.statistics.estimate import finite
 from xlmc.outputs.document.element import EMPTY, Html, element, join
-from xlmc.outputs.histogram import Figure, bars_of, figures_of, multiples
+from xlmc.outputs.histogram import Figure, bars_of, multiples
 from xlmc.outputs.live.protocol import Message
 from xlmc.outputs.page.flow import Flow
 from xlmc.outputs.page.payload import forecast_payload, form_json
@@ -362,7 +362,10 @@ def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | 
 
 def _together(simulation: RunResult, names: tuple[str, str]) -> list[dict[str, Any]]:
     """Return both as charts to be laid over each other; none if they are not two forecasts in one unit."""
-    figures = figures_of(simulation, names) if names[0] != names[1] else []
+    if names[0] == names[1] or not simulation.results.keys() >= {*names}:
+        return []
+    made = (_figure(result, None) for name, result in simulation.results.items() if name in names)
+    figures = [each for each in made if each is not None]
     if len(figures) < 2 or len({figure.answer.units for figure in figures}) > 1:
         return []
     if any(figure.answer.is_share for figure in figures):

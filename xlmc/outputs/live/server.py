@@ -47,6 +47,7 @@ _BODY_SECONDS: Final = 60.0
 _ENDS: Final = 1012
 _UNKNOWN: Final = 4401
 _NO_BOOK: Final = 4404
+_LATE: Final = 4408
 _FULL: Final = 4429
 """Why a WebSocket is closed."""
 
@@ -307,7 +308,9 @@ class LiveServer:
             finally:
                 self._windows.discard(window)
                 self._last_seen = self._clock()
-        except (ProtocolError, TimeoutError):
+        except TimeoutError:
+            await window.close(_LATE)  # the machine slept, or is busy: a page tries again
+        except ProtocolError:
             await window.close(_UNKNOWN)
         except WebSocketDisconnect:
             pass

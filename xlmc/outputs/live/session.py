@@ -15,7 +15,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import XlmcError
-from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS
 from xlmc.outputs.live.adjustments import (
     LIMITS,
     NONE,
@@ -81,6 +80,11 @@ it, the next one, and those of scenarios together. A run that moves, which is to
 _SCATTERED: Final = 10_000
 """Trials of a run that moves whose scatter and correlation are shown."""
 
+_SKETCHED_DRAWS: Final = 1 << 21
+"""Draws of all assumptions together that *What matters* of a run that moves is made of: to keep more takes longer than
+the run.
+"""
+
 OPENS_WITH: Final = 3
 """Forecasts whose charts are open at first."""
 
@@ -131,6 +135,7 @@ class Session:
         self._last: dict[str, Message] = {}
         self._pace = Pace(len(model.needed.graph.formulas))
         self._moving: RunResult | None = None
+        self._sketch_of: Tab | None = None
         self._sketch_seconds = 0.0
         self._stopped_at = -1
         self._ended = False
@@ -397,8 +402,9 @@ class Session:
         for tab in self._stopped_tabs - set(view.tabs):
             self._stopped_tabs.discard(tab)
             self._done.pop(tab, None)
-        if view.tabs != self.view.tabs:
-            self._sketch_seconds = 0.0
+        sketched = _sketched(view)
+        if sketched is not None and sketched != self._sketch_of:
+            self._sketch_of, self._sketch_seconds = sketched, 0.0
         self.view = view
 
     @property
@@ -425,8 +431,12 @@ class Session:
         if self._done.get(stage) == self.version or (stage in ("quick", "moving") and self._drawn == self._answered):
             return False
         if stage == "sketch":
-            shown = any(tab.key == SKETCHED for tab in self.view.tabs)
-            return shown and self._moving is not None and self._sketch_seconds < _SKETCH and not self._is_at_rest
+            return (
+                _sketched(self.view) is not None
+                and self._moving is not None
+                and self._sketch_seconds < _SKETCH
+                and not self._is_at_rest
+            )
         if stage == "quick":
             return self._pace.is_slow and self.version not in (self._done.get("moving"), self._done.get("rest"))
         return stage == "rest" or self._done.get("rest") != self.version
@@ -450,8 +460,9 @@ class Session:
     def _work(self, stage: Stage) -> Work:
         """Return what a stage before the run at rest, or that run itself, has to do."""
         if stage == "sketch":
+            tab = _sketched(self.view)
             assert self._moving is not None
-            tab = next(tab for tab in self.view.tabs if tab.key == SKETCHED)
+            assert tab is not None
             return sketched_tab(self._moving, self.version, tab, 2.0 * _SKETCH)
         resting, pace = stage == "rest", self._pace
         return StateRun(
@@ -471,11 +482,10 @@ class Session:
         ).run
 
     def _draws_shown(self, stage: Stage) -> int:
-        """Return of how many trials draws are shown: all in *What matters* if there is time, few in a scatter."""
-        keys = {tab.key for tab in self.view.tabs}
-        if SKETCHED in keys and stage == "moving" and self._sketch_seconds < _SKETCH:
-            return KEPT_INPUTS
-        return _SCATTERED if "pairs" in keys else 0
+        """Return of how many trials draws are shown: many in *What matters* if there is time, few in a scatter."""
+        if _sketched(self.view) is not None and stage == "moving" and self._sketch_seconds < _SKETCH:
+            return _SKETCHED_DRAWS // max(len(self.own.draws), 1)
+        return _SCATTERED if any(tab.key == "pairs" for tab in self.view.tabs) else 0
 
     def finish(self, job: Job, outcome: Outcome) -> list[Message]:
         """Take what a job found; returns what windows are told of it."""
@@ -550,6 +560,11 @@ class Session:
         for each in messages:
             if each["kind"] in ("frame", "rest", "part"):
                 self._last[f"{each['kind']} {each.get('tab', '')}"] = each
+
+
+def _sketched(view: View) -> Tab | None:
+    """Return the open tab that is brought up to date while states move."""
+    return next((tab for tab in view.tabs if tab.key == SKETCHED), None)
 
 
 def _refuse_without_limit(found: Adjustments, name: str, own: Mapping[str, object]) -> None:

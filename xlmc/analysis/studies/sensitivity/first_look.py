@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.sensitivity.given_data import standardise
 from xlmc.analysis.studies.sensitivity.ranked import Ranked
+from xlmc.montecarlo.interruption import checkpoint
 
 __all__ = ["LOOK_TRIALS", "FirstLook", "first_look"]
 
@@ -66,6 +67,7 @@ def first_look(draws: Sequence[Floats], forecasts: Sequence[Floats]) -> FirstLoo
     totals = np.sum(tables * tables, axis=1)
     scores, squares = [], []
     for start in range(0, len(draws), _TOGETHER):
+        checkpoint()
         ranked = [Ranked.of(column) for column in draws[start : start + _TOGETHER]]
         share = _class_shares(ranked, tables, totals)
         scores.append(share.reshape(len(ranked), 3, len(forecasts)).max(axis=1))

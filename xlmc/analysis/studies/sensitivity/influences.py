@@ -29,6 +29,7 @@ from xlmc.analysis.studies.sensitivity.measures import Influence
 from xlmc.analysis.studies.sensitivity.pull_errors import Units
 from xlmc.analysis.studies.sensitivity.ranked import Ranked
 from xlmc.montecarlo.columns import picked
+from xlmc.montecarlo.interruption import checkpoint
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Forecast
@@ -189,6 +190,7 @@ def _read(column: Floats, rows: NDArray[np.intp]) -> Floats:
 
 def _read_draws(simulation: RunResult, assumption: str, rows: NDArray[np.intp]) -> Floats:
     """Read these rows of draws; where a draw is none, and nothing used it, it counts as an average one."""
+    checkpoint()
     draws = _read(simulation.inputs[assumption], rows)
     missing = np.isnan(draws)
     return np.where(missing, draws[~missing].mean(), draws) if missing.any() and not missing.all() else draws

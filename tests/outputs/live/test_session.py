@@ -27,6 +27,7 @@ from openpyxl.worksheet.table import Table
 from xlmc.analysis.results.statements import statements
 from xlmc.errors import XlmcError
 from xlmc.montecarlo.columns.column_store import on_disk
+from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.outputs.live.adjustments import NONE, Adjustments, adjustments_of, in_words, scenario_of
@@ -439,6 +440,44 @@ def test_further_handles_give_what_the_edited_workbook_gives(readings, tmp_path,
     assert found.trial_index.tobytes() == expected.trial_index.tobytes()
     session.receive(PageMessage("undo", {}))
     assert len(session.adjustments.as_json()["filters"]) <= 2
+
+
+@pytest.mark.parametrize(
+    ("columns", "handles"),
+    [
+        ({"witness Reading": 61.0, "witness std dev": 8.0}, {"witness": {"reading": 61.0, "std_dev": 8.0}}),
+        ({"at 40 ft ±": 2.0, "witness Use": "no"}, {"at 40 ft": {"plus_minus": 2.0}, "witness": {"used": False}}),
+        ({"possible At most": 70}, {"possible": {"at_most": 70.0}}),
+        ({"possible At most": "none"}, {"possible": {"at_most": NONE}}),
+        ({"t High": 3.0, "v Upper cutoff": "none"}, {"t": {"high": 3.0}, "v": {"upper_cutoff": NONE}}),
+        ({"t High": 2.9, "t": "0.5 to 3"}, {"t": {"low": 0.5, "high": 3.0}}),
+        ({"speed Threshold": 36, "speed Range %": 95}, {"speed": {"threshold": 36.0, "central": 95.0}}),
+        ({"t Distribution": "Uniform"}, None),
+        ({"M!C5": 1.0}, None),
+    ],
+)
+def test_a_scenario_headed_by_what_has_a_handle_can_be_shown(readings, tmp_path, columns, handles):
+    """What is typed into the cells of a row is the same as what its handles do, to the last bit."""
+    book = openpyxl.load_workbook(readings[0])
+    sheet = book.create_sheet("Scenarios")
+    sheet.append(["Name", *columns])
+    sheet.append(["other", *columns.values()])
+    sheet.add_table(Table(displayName="xlmc_scenarios", ref=f"A1:{chr(65 + len(columns))}2"))
+    book.save(tmp_path / "case.xlsx")
+    session = Session(load(tmp_path / "case.xlsx"))
+    (row,) = session.greeting()[1]["scenarios"]
+    assert row["shows"] is (handles is not None)
+    if handles is None:
+        return
+    session.receive(PageMessage("show", {"name": "other"}))
+    found = session.adjustments.as_json()
+    assert {name: each for part in found.values() for name, each in part.items()} == handles
+    settle(session)
+    (scenario,) = session.own.definitions.scenarios
+    expected = simulate(applied(session.own, scenario.changes), evidence=None)
+    assert session.rest.trial_index.tobytes() == expected.trial_index.tobytes()
+    for name, values in expected.forecasts.items():
+        assert session.rest.forecasts[name].tobytes() == values.tobytes()
 
 
 def test_readings_are_moved_without_another_program(readings):

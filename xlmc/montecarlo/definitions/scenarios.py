@@ -7,7 +7,7 @@ To change a table's row is to type other numbers into its cells. These classes o
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import CellValue
@@ -131,12 +131,14 @@ class Typed:
 
     Attributes:
         named: what a person calls the cell; empty for its address.
+        of: the kind of the table that it is a cell of, the name of its row and its heading; None for other cells.
     """
 
     cell: Cell
     value: CellValue
     where: Cell | None = None
     named: str = ""
+    of: tuple[str, str, str] | None = field(default=None, compare=False)
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,12 +8,13 @@ its central range in percent. A limit, cutoff or threshold that is `NONE` is tak
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from math import isfinite
 from typing import Any, Final, Literal
 
 from xlmc.analysis.results.statements.in_words import number_text
+from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Forecast, Parameter
 from xlmc.montecarlo.definitions.evidence import SIZES, USE_IS_OFF, Evidence
@@ -29,7 +30,9 @@ from xlmc.montecarlo.definitions.scenarios import (
     Scenario,
     Stated,
     Switched,
+    Typed,
 )
+from xlmc.montecarlo.distributions.spelling import name_key, plain
 
 __all__ = [
     "BAND",
@@ -193,7 +196,7 @@ def _amount(key: str, value: object) -> Amount:
     if value == NONE and key in REMOVABLE:
         return NONE
     number = float(value)  # type: ignore[arg-type]  # whatever it is
-    if not isfinite(number):
+    if not math.isfinite(number):
         raise ValueError(f"{key} is {number}")
     return number
 
@@ -293,7 +296,8 @@ def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments 
     """Return a scenario of the workbook as a state of the window; None if the window has no handle for a change."""
     assumptions = {each.name: each for each in definitions.assumptions}
     found = Adjustments()
-    for change in scenario.changes:
+    typed = [_of_handle(definitions, each) for each in scenario.changes if isinstance(each, Typed)]
+    for change in (*typed, *(each for each in scenario.changes if not isinstance(each, Typed))):
         values = _values(change, assumptions)
         if values is None:
             return None
@@ -306,6 +310,56 @@ def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments 
                 return None
             found = found.having(of, name, key, value)
     return found
+
+
+def _of_handle(definitions: Definitions, typed: Typed) -> Change:
+    """Return what is typed into a row of a table as a change of what the row says; itself where no handle does that."""
+    kind, written, heading = typed.of or ("", "", "")
+    rows = {name_key(each.name): each.name for each in _rows_of_table(definitions, kind)}
+    name = rows.get(written, "")
+    keys = {plain(each): key for key, headings in _headings(definitions, kind, name) for each in headings}
+    key, value, where = keys.get(plain(heading), ""), typed.value, typed.where
+    if key == "frozen" and isinstance(value, bool):
+        return Frozen(name, None, where) if value else Drawn(name, where)
+    number = float(value) if isinstance(value, int | float) and not isinstance(value, bool | ErrorCode) else None
+    if key in ("", "frozen") or (number is None and (value is not None or key not in REMOVABLE)):
+        return typed
+    if kind == "xlmc_evidence" and number is not None:
+        return Measured(name, {key: number}, where)
+    change = {"xlmc_filters": Limits, "xlmc_forecasts": Stated}.get(kind, Numbers)
+    return change(name, {key: number}, where)
+
+
+def _rows_of_table(definitions: Definitions, kind: str) -> Iterable[Assumption | Filter | Evidence | Forecast]:
+    """Return what the rows of a kind of table define."""
+    match kind:
+        case "xlmc_assumptions":
+            return definitions.assumptions
+        case "xlmc_filters":
+            return (*definitions.filters, *definitions.forecast_filters, *definitions.unused)
+        case "xlmc_evidence":
+            return definitions.evidence
+        case "xlmc_forecasts":
+            return definitions.forecasts
+    return ()
+
+
+def _headings(definitions: Definitions, kind: str, name: str) -> Iterator[tuple[str, Sequence[str]]]:
+    """Return the key of each handle of a row, and how its column may be headed."""
+    match kind:
+        case "xlmc_assumptions":
+            assumption = next((each for each in definitions.assumptions if each.name == name), None)
+            for spec in () if assumption is None else assumption.family.parameters:
+                yield spec.key, spec.headings
+            yield from ((key, (heading,)) for key, heading in CUTOFFS.items())
+            yield "frozen", ("Frozen",)
+        case "xlmc_filters":
+            yield from ((key, (heading,)) for key, heading in LIMITS.items())
+        case "xlmc_evidence":
+            yield "reading", ("Reading",)
+            yield from ((key, (heading, "±") if key == "plus_minus" else (heading,)) for key, heading in SIZES.items())
+        case "xlmc_forecasts":
+            yield from (("threshold", ("Threshold",)), ("central", ("Range %",)))
 
 
 def _row_of(change: Change) -> tuple[str, str]:

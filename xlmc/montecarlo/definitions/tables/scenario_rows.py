@@ -196,8 +196,8 @@ class _Headings:
             if rest == "use" and row.table.kind in _SWITCHES:
                 found[row.where] = _Column(heading, (row.where, "use"), _switch_of(as_text(row.content("Name").value)))
             elif rest and row.has(rest) and plain(rest) != "name":
-                cell = row.cell(rest)
-                found[cell] = _Column(heading, cell, _typed(cell, heading, clears=_is_number_column(rest)))
+                cell, of = row.cell(rest), (row.table.kind, name, rest)
+                found[cell] = _Column(heading, cell, _typed(cell, heading, of, clears=_is_number_column(rest)))
         if found:
             yield from found.values()
             return
@@ -227,7 +227,7 @@ class _Headings:
         own = next((each for each in self._assumptions.values() if each.cell == cell), None)
         if own is not None:
             return _of_assumption(heading, own)
-        return _Column(heading, cell, _typed(cell, heading, clears=False))
+        return _Column(heading, cell, _typed(cell, heading, None, clears=False))
 
 
 def _named_rows(workbook: Workbook, tables: Mapping[str, Sequence[DefinitionTable]]) -> Iterator[tuple[str, Row]]:
@@ -284,12 +284,12 @@ def _of_filter(heading: str, filter_: Filter) -> _Column:
     return _Column(heading, ("filter", name_key(name)), take)
 
 
-def _typed(cell: Cell, heading: str, *, clears: bool) -> Take:
+def _typed(cell: Cell, heading: str, of: tuple[str, str, str] | None, *, clears: bool) -> Take:
     def take(content: CellContent, where: Cell) -> Change:
         value: CellValue = content.value
         if clears and isinstance(value, str) and value.strip().casefold() == _NOTHING:
             value = None
-        return Typed(cell, value, where, heading)
+        return Typed(cell, value, where, heading, of)
 
     return take
 

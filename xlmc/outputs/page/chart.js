@@ -109,11 +109,6 @@ const INCREMENTS = [
   ...[1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 5000, 10000],
 ];
 
-/** The decimals that write multiples of a step. */
-function decimalsOf(step) {
-  return step > 0 ? Math.max(0, Math.ceil(-Math.log10(step) - 1e-9)) : 0;
-}
-
 /** What all charts of the page have in common. */
 function chartOptions(width, ends, top, { units, form }, view) {
   const thin = { stroke: "#8994A1", width: 1 };
@@ -123,7 +118,7 @@ function chartOptions(width, ends, top, { units, form }, view) {
   return {
     width,
     height: Math.round(Math.max(220, Math.min(HIGHEST, width * 0.55))),
-    padding: [27, 14, 0, 0],
+    padding: [27, Math.max(14, Math.ceil(3.7 * longest)), 0, 0], // room for half of the last number
     legend: { show: false },
     cursor: { y: false, points: { show: false }, drag: { x: false, y: false } },
     scales: { x: { time: false, range: ends }, y: { range: [0, top] } },

@@ -14,6 +14,14 @@ function exponentOf(number) {
   return Number(number.toExponential(1).split("e")[1]);
 }
 
+/** The decimals that write multiples of a step, which are 1, 2, 2.5 or 5 times a power of ten: 0.25 -> 2, 2.5 -> 1. */
+function decimalsOf(step) {
+  if (!(step > 0)) return 0;
+  const first = Math.max(0, Math.ceil(-Math.log10(step) - 1e-9));
+  const units = step * 10 ** first;
+  return first + (Math.abs(units - Math.round(units)) > 1e-6 * units ? 1 : 0);
+}
+
 /** 3542 -> "3,542". */
 function countText(count) {
   return Math.round(count).toString().replace(/\B(?=(\d{3})+$)/g, ",");

@@ -103,10 +103,12 @@ class ScenarioView {
       this.name.value = "";
     } } }, make("label", { for: "scenario-name", text: "Keep this state as " }), this.name, make("button", { text: "Keep" }));
     const button = (text, kind) => make("button", { type: "button", text, on: { click: () => wire.say({ kind }) } });
+    const about = make("p", { class: "remark", text: "A scenario is a state with a name: move something, and keep it. The usual variants are "
+      + "every range half and one and a half times as wide, and every limit halved and doubled." });
     this.list = make("ul", { class: "scenarios" });
     this.table = make("div");
     this.compare = button("Compare all in one table", "compare");
-    place.append(this.now, form, this.list, make("p", { class: "actions-left" }, this.compare,
+    place.append(about, this.now, form, this.list, make("p", { class: "actions-left" }, this.compare,
       button("Add the usual variants", "variants")), this.table);
   }
 
@@ -136,6 +138,14 @@ function changesOf(changes) {
   return make("details", {}, make("summary", { text: `${changes.length} changes` }), said);
 }
 
+/** The button of each study, its command, and what it answers. */
+const STUDIES = [
+  ["Verify against Excel", "verify", "Do the formulas give the values that Excel saved?"],
+  ["Stability", "stability", "Where does a number lose digits, or is not what it seems?"],
+  ["Screen", "screen", "Which assumptions may be held, and which filters left out, without changing the answers?"],
+  ["Methods", "methods", "Which method of uncertainty analysis is exact enough, and how long does each take?"],
+];
+
 /** Files to hand over, and further questions on the workbook. */
 class HandView {
   constructor(place, wire) {
@@ -148,6 +158,7 @@ class HandView {
     this.answer = make("pre", { tabindex: "0", hidden: true, "aria-label": "Answer of the study" });
     this.comparing = make("span", { hidden: true }, ask("Compare with", "compare"), " ", this.other);
     this.changes = make("p", { class: "remark" });
+    this.still = make("p", { class: "remark", text: "Nothing is changed yet." });
     this.copy = save("A copy of the workbook", "copy");
     this.into = make("button", { type: "button", text: "The workbook itself …", on: { click: () => this.confirm(true) } });
     this.sure = make("p", { class: "notice", hidden: true, role: "group", "aria-label": "Type the changes into the workbook" },
@@ -161,12 +172,13 @@ class HandView {
       make("p", { class: "actions-left" }, save("Result workbook", "book"), save("Page", "page"), save("JSON", "json"),
         save("Saved run", "run"), make("button", { type: "button", text: "Print", on: { click: () => wire.say({ kind: "print" }) } })),
       make("h2", { text: "Type the changes into" }),
-      make("p", { class: "actions-left" }, this.copy, this.into), this.sure,
+      this.still, make("p", { class: "actions-left" }, this.copy, this.into), this.sure,
       make("h2", { text: "Further studies" }),
       make("p", { class: "remark", text: "They examine the state that is shown, in a copy; Verify examines the workbook's own file. "
         + "You can go on while they run." }),
-      make("p", { class: "actions-left" }, ask("Verify against Excel", "verify"), ask("Stability", "stability"),
-        ask("Screen", "screen"), ask("Methods", "methods"), this.comparing),
+      make("dl", { class: "studies" }, ...STUDIES.flatMap(([text, what, about]) => [
+        make("dt", {}, ask(text, what)), make("dd", { text: about })])),
+      make("p", { class: "actions-left" }, this.comparing),
       make("p", { class: "actions-left" }, this.stand, this.cancel), this.answer);
   }
 
@@ -176,6 +188,7 @@ class HandView {
       ". The results say so first, and their record says what differs."] : ["of the workbook as it is."];
     this.changes.replaceChildren("Written beside the workbook, ", ...of);
     for (const button of [this.copy, this.into]) button.disabled = !changes.length;
+    this.still.hidden = changes.length > 0;
     if (!changes.length) this.sure.hidden = true;
   }
 

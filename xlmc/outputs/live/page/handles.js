@@ -58,7 +58,9 @@ class Track {
     const [from, to] = this.axis ?? [0, 0];
     const good = from < low - 0.08 * span && to > high + 0.08 * span && to - from < 4 * span;
     if (!good) this.axis = [low - 0.3 * span, high + 0.3 * span];
-    const shown = this.axis.map((end) => `${Number(end.toPrecision(3))}`);
+    const [first, last] = this.axis;
+    const decimals = Math.min(12, decimalsOf(10 ** Math.floor(Math.log10(last - first) - 1))); // the ends differ as they are shown
+    const shown = this.axis.map((end) => `${Number(end.toFixed(decimals))}`);
     [...this.ends.children].forEach((place, i) => { place.textContent = shown[i]; });
   }
 
@@ -243,6 +245,7 @@ class NumberBox {
     }
     this.input.disabled = off;
     this.input.title = why || this.hint;
+    this.input.classList.toggle("computed", Boolean(why));
   }
 
   /** Say why what was typed is not taken; nothing where it is. */

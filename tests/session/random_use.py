@@ -32,7 +32,7 @@ PATIENCE = 120.0
 
 TABS = ("charts", "matters", "pairs", "tables", "scenarios", "studies")
 KINDS = (
-    "move move move hold numbers freeze band limit limit reading state use reset keep keep drop show undo variants"
+    "move move move hold numbers freeze band limit limit reading state use run reset keep keep drop show undo variants"
     " compare view view pin stop print save book book reload restart restore burst"
 )
 """What a client does next; twice what is done more often."""
@@ -269,6 +269,8 @@ class Use:
             name = dice.choice(["sum", "product"])
             key, values = dice.choice([("threshold", ["none", 0.0, 25.0, None]), ("central", [80.0, 100.0, None])])
             self._set(client, "forecast", name, key, dice.choice(values))
+        elif what == "run":
+            client.say("run", trials=dice.choice([None, 500, 2_000]), seed=dice.choice([None, None, 7]))
         elif what == "reset":
             client.say("reset", of="assumption", name=dice.choice(["", row["name"]]))
         elif what == "keep":
@@ -343,7 +345,7 @@ class Use:
 
     def _moment(self):
         session = self.open_book.session
-        return session.adjustments, dict(session.stored)
+        return session.adjustments, dict(session.stored), session.asked
 
     def still(self):
         """Wait until nothing is done any more, and every client has heard of it."""
@@ -419,7 +421,7 @@ class Use:
             except XlmcError as error:
                 raise AssertionError((session.adjustments, self.done[-12:])) from error
             expected = build_model(read_workbook(edited.data, "book.xlsx"), self.book.path)
-        expected = simulate(expected, evidence=None)
+        expected = simulate(expected, evidence=None, trials=session.asked.trials, seed=session.asked.seed)
         assert found.trial_index.tobytes() == expected.trial_index.tobytes(), self.done[-12:]
         for name, values in expected.forecasts.items():
             assert found.forecasts[name].tobytes() == values.tobytes(), (name, self.done[-12:])

@@ -800,6 +800,24 @@ def test_a_reading_is_dragged_limits_go_and_answers_are_stated_otherwise(chromiu
     assert (above.get_attribute("value"), central.get_attribute("value")) == ("35", "51")
 
 
+def test_trials_and_seed_are_typed_and_brought_back(chromium, running, tmp_path):
+    page = Page(chromium, running(book=book_of_readings(tmp_path / "case.xlsx")))
+    trials, seed = (page.box(page.one("#run"), label) for label in ("Trials", "Seed"))
+    page.at_rest(lambda: page.type(trials, "6,000"))
+    assert "6,000 trials" in page.one("#stand").text
+    page.at_rest(lambda: page.type(seed, "7"))
+    run = page.run("return Live.state.run")
+    assert (run["trials"], run["seed"]) == (6000, 7)
+    page.type(trials, "2.5")
+    assert "whole number" in page.one("#run").text
+    page.at_rest(lambda: page.click(page.button("As in the workbook", "#run")))
+    assert "4,000 trials" in page.one("#stand").text
+    page.at_rest(lambda: page.click(page.one("#undo")))
+    assert (trials.get_attribute("value"), seed.get_attribute("value")) == ("6000", "7")
+    page.at_rest(lambda: page.click(page.one("#reset")))
+    assert not page.run("return Live.state.run.changed")
+
+
 def test_print_prints_the_page_of_results_of_what_is_shown(chromium, running, tmp_path):
     page = Page(chromium, running(book=wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=1)))
     page.run(

@@ -27,6 +27,7 @@ from openpyxl.worksheet.table import Table
 from xlmc.analysis.results.statements import statements
 from xlmc.errors import XlmcError
 from xlmc.montecarlo.columns.column_store import on_disk
+from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
@@ -478,6 +479,51 @@ def test_a_scenario_headed_by_what_has_a_handle_can_be_shown(readings, tmp_path,
     assert session.rest.trial_index.tobytes() == expected.trial_index.tobytes()
     for name, values in expected.forecasts.items():
         assert session.rest.forecasts[name].tobytes() == values.tobytes()
+
+
+def test_trials_and_seed_give_what_a_workbook_with_these_settings_gives(readings, tmp_path, monkeypatch):
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", moving := 2_000)
+    path, model = readings
+    session = Session(model)
+    settle(session)
+    first = session.rest
+    assert session.greeting()[1]["run"] == {"trials": 4_000, "seed": 999, "own": [4_000, 999], "changed": False}
+    session.receive(change("witness", "reading", 60.0, of="filter"))
+    (told,) = session.receive(PageMessage("run", {"trials": 6_000, "seed": 7})).all
+    assert told["run"] == {"trials": 6_000, "seed": 7, "own": [4_000, 999], "changed": True}
+    found = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    book = openpyxl.load_workbook(edited(path, tmp_path / "edited.xlsx", {("witness", "Reading"): 60.0}))
+    sheet = book["T"]
+    table = sheet.tables["xlmc_settings"]
+    bottom = int(table.ref.rpartition("B")[2]) + 1
+    table.ref = f"{table.ref.partition(':')[0]}:B{bottom}"
+    sheet.cell(bottom - 1, 2, 6_000)
+    sheet.cell(bottom, 1, "Seed")
+    sheet.cell(bottom, 2, 7)
+    book.save(tmp_path / "edited.xlsx")
+    copy = load(tmp_path / "edited.xlsx")
+    assert (copy.definitions.settings.trials, copy.definitions.settings.seed) == (6_000, 7)
+    expected = simulate(copy, trials=moving, sampling="mc", evidence=found.settings.evidence)
+    assert found.trial_index.tobytes() == expected.trial_index.tobytes()
+    settle(session)
+    expected = simulate(copy, evidence=None)
+    for name, values in expected.forecasts.items():
+        assert session.rest.forecasts[name].tobytes() == values.tobytes()
+    assert session.rest.trial_index.tobytes() == expected.trial_index.tobytes()
+    assert "6,000" in page_of(session.at_rest())  # which is of a copy, run with these, and compared to the last bit
+
+    with pytest.raises(XlmcError, match="trials"):
+        session.receive(PageMessage("run", {"trials": 0, "seed": 7}))
+    session.receive(PageMessage("undo", {}))
+    session.receive(PageMessage("undo", {}))
+    settle(session)
+    assert session.asked == RunOptions()
+    assert session.rest.trial_index.tobytes() == first.trial_index.tobytes()
+    session.receive(PageMessage("redo", {}))
+    session.receive(PageMessage("redo", {}))
+    assert (session.asked.trials, session.asked.seed) == (6_000, 7)
+    session.replace_book(copy, [])
+    assert session.asked == RunOptions()  # the workbook says it now
 
 
 def test_readings_are_moved_without_another_program(readings):

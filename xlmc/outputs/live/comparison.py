@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.studies.scenario_answers import answers_of, model_of, run_scenario
@@ -29,11 +30,18 @@ class Comparison:
         stored: scenarios of the window, by name; they take the place of the workbook's of the same name.
         piece: trials after which it is looked whether the table is still wanted.
         in_memory: bytes of the trials of all runs together that stay in memory.
+        asked: trials and seed, where they are not those of the workbook.
     """
 
     def __init__(
-        self, own: CompiledModel, stored: Mapping[str, Adjustments], piece: int, in_memory: int | None = None
+        self,
+        own: CompiledModel,
+        stored: Mapping[str, Adjustments],
+        piece: int,
+        in_memory: int | None = None,
+        asked: RunOptions | None = None,
     ) -> None:
+        self._asked = asked or RunOptions()
         fitting = {name: each.only(own.definitions) for name, each in stored.items()}
         mine = [scenario_of(own.definitions, name, each) for name, each in fitting.items()]
         self._own, self._piece = own, piece
@@ -60,7 +68,7 @@ class Comparison:
             report_share((done + progress.share) / count)
 
         if self._base is None:
-            options = RunOptions(scenarios=True, in_memory=self._of_a_run)
+            options = replace(self._asked, scenarios=True, in_memory=self._of_a_run)
             self._base = run_model(self._own, options, progress=watch, pieces=self._piece)
         for scenario in self._scenarios:
             go_on()

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
@@ -63,12 +63,14 @@ class AtRest:
         adjustments: what differs from it.
         name: of the scenario that it is; empty for none.
         run: its run.
+        asked: trials and seed, where they are not those of the workbook.
     """
 
     own: CompiledModel
     adjustments: Adjustments
     name: str
     run: RunResult
+    asked: RunOptions = field(default_factory=RunOptions)
 
     @property
     def changes(self) -> tuple[str, ...]:
@@ -123,7 +125,7 @@ def page_of(state: AtRest) -> str:
 def _run_of_copy(state: AtRest) -> RunResult:
     """Run a copy of the workbook with the state typed into it."""
     edited, book = edited_state(state.own, state.adjustments, state.name), state.own.workbook
-    run = run_model(build_model(read_workbook(edited.data, book.name, book.functions), state.own.path), RunOptions())
+    run = run_model(build_model(read_workbook(edited.data, book.name, book.functions), state.own.path), state.asked)
     if not _is_same(run, state.run):
         message = "a copy of the workbook with these changes gives other numbers than the window shows"
         raise SimulationError(message, hint="Nothing was written; please report this")
@@ -156,16 +158,17 @@ def write_changes(state: AtRest, book: Path, *, into: bool) -> str:
         DefinitionError: as for `save_result`.
     """
     edited = edited_state(state.own, state.adjustments, state.name)
+    asked = "" if state.asked == RunOptions() else " Trials and seed are those of the workbook."
     if not edited.cells:
         raise SimulationError("nothing is changed", hint="move something first")
     if not into:
         path = write_edited(edited, unused_path(book.with_name(f"{book.stem}{_label(state)}{copy_ending(book)}")))
-        return f"Written: {path}. {_summary(edited)}"
+        return f"Written: {path}. {_summary(edited)}{asked}"
     refuse_into_source(book, edited.sha256, "wait until it was read again")
     copy_path = unused_path(book.with_name(f"{book.stem}-before{book.suffix}"))
     write_workbook(copy_path, state.own.workbook.data, lambda: refuse_existing(copy_path))
     write_edited(edited, book, overwrite=True)
-    return f"Typed into {book.name}. {_summary(edited)} The workbook as it was: {copy_path.name}"
+    return f"Typed into {book.name}. {_summary(edited)}{asked} The workbook as it was: {copy_path.name}"
 
 
 def _summary(edited: EditedWorkbook) -> str:

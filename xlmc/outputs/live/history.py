@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Final
 
+from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.outputs.live.adjustments import Adjustments
 
 __all__ = ["History", "Moment"]
@@ -22,11 +23,13 @@ class Moment:
         adjustments: what differed from the workbook.
         stored: scenarios by name.
         shown: the scenario that was shown; empty for none.
+        asked: trials and seed, where they are not those of the workbook.
     """
 
     adjustments: Adjustments
     stored: Mapping[str, Adjustments]
     shown: str = field(compare=False)
+    asked: RunOptions = field(default_factory=RunOptions)
 
 
 class History:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, Literal
 
 from xlmc.errors import XlmcError
@@ -170,6 +170,7 @@ class StateRun:
         in_memory: bytes of its trials that stay in memory.
         watched: whether that is looked at all; a run that is quick ends sooner than the next move comes.
         draws: trials of a run that moves whose draws are kept, as what is shown of it needs them.
+        asked: trials and seed, where they are not those of the workbook.
     """
 
     stage: Stage
@@ -185,6 +186,7 @@ class StateRun:
     in_memory: int
     watched: bool
     draws: int
+    asked: RunOptions
 
     def run(self, wanted: Wanted, report_share: ReportShare, clock: Clock) -> Outcome:
         """Do it; see `Work`."""
@@ -203,7 +205,7 @@ class StateRun:
             if resting:
                 model = self.models.at_rest(self.adjustments)
                 begun = clock()
-                options = RunOptions(in_memory=self.in_memory)
+                options = replace(self.asked, in_memory=self.in_memory)
                 found = run_model(model, options, progress=watched, pieces=self.piece, follow=())
                 base = bases_of(found)
             else:
@@ -215,6 +217,7 @@ class StateRun:
                 method = self.method or "rejection"
                 options = RunOptions(
                     trials=self.trials,
+                    seed=self.asked.seed,
                     sampling="mc",
                     engine=moving.reusing.engine,
                     evidence=method,

@@ -71,10 +71,12 @@ class KnownModels:
         own: the workbook's model.
         trials: of the longest run of a state that moves.
         most_bytes: of draws that are kept.
+        seed: of all runs; None for the workbook's.
     """
 
-    def __init__(self, own: CompiledModel, trials: int, most_bytes: int | None = None) -> None:
+    def __init__(self, own: CompiledModel, trials: int, most_bytes: int | None = None, seed: int | None = None) -> None:
         self.own, self._trials, self._most_bytes = own, trials, most_bytes
+        self._seed = own.definitions.settings.seed if seed is None else seed
         self._holding: dict[_State, CompiledModel] = {(): own}
         self._runners: dict[_State, ReusingRunner] = {}
         self._last: tuple[CompiledModel, Adjustments, CompiledModel] | None = None
@@ -140,7 +142,7 @@ class KnownModels:
         return self._runners[state]
 
     def _new_runner(self, model: CompiledModel) -> ReusingRunner:
-        return ReusingRunner(model, _engine(model), model.definitions.settings.seed, self._trials, self._most_bytes)
+        return ReusingRunner(model, _engine(model), self._seed, self._trials, self._most_bytes)
 
 
 def _engine(model: CompiledModel) -> str:

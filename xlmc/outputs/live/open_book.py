@@ -39,7 +39,9 @@ _TOLD_EVERY: Final = 0.1
 _SETTLING: Final = (0.0, 0.1, 0.3, 0.6, 1.0)
 """Seconds before each try to read a workbook that was just saved: a half-written one is whole a moment later."""
 
-_CHANGING: Final = frozenset({"set", "numbers", "reset", "keep", "show", "drop", "restore", "variants", "undo", "redo"})
+_CHANGING: Final = frozenset(
+    {"set", "numbers", "reset", "run", "keep", "show", "drop", "restore", "variants", "undo", "redo"}
+)
 """Kinds after which what outlives the window is other."""
 
 _TELLS: Final[Mapping[str, tuple[str, ...]]] = {

@@ -13,8 +13,9 @@ secret, and a number that is used once; anything else before it ends the connect
 `value` null: as in the book, `none`: taken away; `held`: a handle is still held; `seq`: counts the page's changes, \
 and comes back with the frame |
 | `numbers` | `of`, `name`, `values`, `seq` | several numbers of one row at once: key -> number |
+| `run` | `trials`, `seed` | of runs at rest, instead of what the workbook says; null: what it says |
 | `undo`, `redo` | | go back to the state before the last change, and forth again |
-| `reset` | `of`, `name` | everything of one row as in the book; with an empty `name`: of all |
+| `reset` | `of`, `name` | everything of one row as in the book; with an empty `name`: of all, and the run |
 | `view` | `forecasts`, `chosen`, `tab`, `first`, `second`, `fits` | which charts can be seen, of which \
 forecasts the other tabs are, which tab is open, whose pairs it \
 shows, whether fitted distributions are wanted |
@@ -44,8 +45,9 @@ on the state that is shown; `other`: the key of the workbook to compare it with 
 | `ticket` | `ticket` | one file may be sent with it |
 | `book` | `name`, `folder`, `forecasts`, `notices`, `settings`, `shapes` | the workbook as it is now |
 | `others` | `books` | the workbooks beside it that it can be compared with: `name` and `key` |
-| `state` | `version`, `assumptions`, `filters`, `forecasts`, `changes`, `scenarios`, `shown`, `offered`, `behind`, \
-`undo`, `redo` | what is set; `changes` in words; `undo`, `redo`: whether there is something to |
+| `state` | `version`, `assumptions`, `filters`, `forecasts`, `run`, `changes`, `scenarios`, `shown`, `offered`, \
+`behind`, `undo`, `redo` | what is set; `run`: trials and seed, those of the workbook, and whether they \
+differ; `changes` in words; `undo`, `redo`: whether there is something to |
 | `moved` | `of`, `name`, `key`, `value` | what was set while a handle is held; `state` follows when it is let go |
 | `frame` | `stage`, `version`, `seq`, `trials`, `accepted`, `share`, `few`, `shapes`, `forecasts` | an answer; `few`: \
 from too few trials; `stage`: \
@@ -132,6 +134,10 @@ def _is_count(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and 0 <= value < 1 << 53
 
 
+def _is_count_or_none(value: object) -> bool:
+    return value is None or _is_count(value)
+
+
 def _are_texts(value: object) -> bool:
     return isinstance(value, list) and len(value) <= _MOST_NAMES and all(map(_is_text, value))
 
@@ -166,6 +172,7 @@ _FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
         "seq": _is_count,
     },
     "numbers": {"of": _OF, "name": _is_text, "values": _are_numbers, "seq": _is_count},
+    "run": {"trials": _is_count_or_none, "seed": _is_count_or_none},
     "undo": {},
     "redo": {},
     "reset": {"of": _OF, "name": _is_text},

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import XlmcError
+from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.outputs.live.adjustments import (
     LIMITS,
     NONE,
@@ -56,6 +57,7 @@ from xlmc.outputs.live.window_book import (
     book_message,
     filter_rows,
     known_scenario,
+    run_row,
     scenario_rows,
     stated_rows,
 )
@@ -84,6 +86,9 @@ _SKETCHED_DRAWS: Final = 1 << 21
 """Draws of all assumptions together that *What matters* of a run that moves is made of: to keep more takes longer than
 the run.
 """
+
+_Told = tuple[int, Adjustments, RunOptions]
+"""What tells a state from others: which workbook, what was changed, and trials and seed."""
 
 OPENS_WITH: Final = 3
 """Forecasts whose charts are open at first."""
@@ -115,7 +120,7 @@ class Session:
         memory: int = MEMORY,
     ) -> None:
         self.own, self._memory = model, memory
-        self.adjustments = Adjustments()
+        self.adjustments, self.asked = Adjustments(), RunOptions()
         self.stored: dict[str, Adjustments] = dict(stored or {})
         self.offered = offered or Adjustments()
         self.shown = ""
@@ -123,8 +128,8 @@ class Session:
         self.rest: RunResult | None = None
         self.behind: RunResult | None = None
         self.behind_is = "the workbook as it was opened"
-        self._behind_of: tuple[int, Adjustments] | None = None
-        self._answered: tuple[int, Adjustments] | None = None
+        self._behind_of: _Told | None = None
+        self._answered: _Told | None = None
         self.view = View(tuple(each.name for each in model.forecasts[:OPENS_WITH]))
         self._pin_next = True
         self._dragged = False
@@ -154,7 +159,7 @@ class Session:
         return [book_message(self.own), self._state(), *self._last.values(), *self._trouble()]
 
     def _new_models(self) -> KnownModels:
-        return KnownModels(self.own, MOVING_TRIALS, int(_OF_DRAWS * (self._memory << 20)))
+        return KnownModels(self.own, MOVING_TRIALS, int(_OF_DRAWS * (self._memory << 20)), self.asked.seed)
 
     @property
     def _of_a_run(self) -> int:
@@ -168,6 +173,7 @@ class Session:
             "assumptions": assumption_rows(self.own, self.adjustments),
             "filters": filter_rows(self.own, self.adjustments),
             "forecasts": stated_rows(self.own, self.adjustments),
+            "run": run_row(self.own, self.asked),
             "changes": in_words(self.own.definitions, self.adjustments),
             "scenarios": list(scenario_rows(self.own.definitions, self.stored)),
             "shown": self.shown,
@@ -210,6 +216,9 @@ class Session:
                 return self._set_all(sent)
             case "reset":
                 self._change(self.adjustments.without(sent["of"], sent["name"]) if sent["name"] else Adjustments())
+                self._ask(self.asked if sent["name"] else RunOptions())
+            case "run":
+                self._ask(self._asked_of(sent["trials"], sent["seed"]))
             case "view":
                 self.look(View.of([sent], [each.name for each in self.own.forecasts]))
                 return False
@@ -230,7 +239,9 @@ class Session:
                 self._show(sent["name"])
             case "compare":
                 self._compare += 1
-                self._comparison = Comparison(self.own, self.stored, self._pace.piece(resting=True), self._of_a_run)
+                self._comparison = Comparison(
+                    self.own, self.stored, self._pace.piece(resting=True), self._of_a_run, self.asked
+                )
                 return False
             case "variants":
                 self.stored |= usual_variants(self.own.definitions)
@@ -247,13 +258,41 @@ class Session:
 
     @property
     def _moment(self) -> Moment:
-        return Moment(self.adjustments, dict(self.stored), self.shown)
+        return Moment(self.adjustments, dict(self.stored), self.shown, self.asked)
+
+    def _asked_of(self, trials: int | None, seed: int | None) -> RunOptions:
+        """Return what differs of these from the workbook.
+
+        Raises:
+            SimulationError: one is out of its range.
+        """
+        own = self.own.definitions.settings
+        asked = RunOptions(trials=None if trials == own.trials else trials, seed=None if seed == own.seed else seed)
+        asked.settings(own)  # refuses what is out of range
+        return asked
+
+    def _fitting(self, asked: RunOptions) -> RunOptions:
+        """Return what still differs from a workbook that may have been saved meanwhile; nothing if it fits no more."""
+        try:
+            return self._asked_of(asked.trials, asked.seed)
+        except XlmcError:  # another sampling method may take other numbers of trials
+            return RunOptions()
+
+    def _ask(self, asked: RunOptions) -> None:
+        """Run with these from now on."""
+        if asked == self.asked:
+            return
+        self.asked, other_seed = asked, asked.seed != self.asked.seed
+        self.version += 1
+        if other_seed:
+            self._models = self._new_models()
 
     def _go(self, where: str) -> Replies:
         """Go back to the moment before, or forth again."""
 
         def fitting(each: Moment) -> Moment:
-            return Moment(each.adjustments.only(self.own.definitions), each.stored, each.shown)
+            adjustments = each.adjustments.only(self.own.definitions)
+            return replace(each, adjustments=adjustments, asked=self._fitting(each.asked))
 
         go = self._history.undo if where == "undo" else self._history.redo
         found = go(self._moment, fitting)
@@ -261,6 +300,7 @@ class Session:
             self.stored, self._dragged = dict(found.stored), False
             if found.adjustments != self.adjustments:
                 self._change(found.adjustments)
+            self._ask(found.asked)
             self.shown = found.shown if found.shown in self.stored or not found.shown else ""
         return Replies(all=[self._state()])
 
@@ -334,6 +374,7 @@ class Session:
         if before != self.adjustments and before not in self.stored.values() and not self.offered:
             self.offered = before  # what no longer fits is not lost: it may fit again
         self.version += 1
+        self.asked = self._fitting(self.asked)
         self._models = self._new_models()
         self._pace = self._pace.of_saved(len(model.needed.graph.formulas))
         self._moving, self._sketch_seconds = None, 0.0
@@ -352,7 +393,7 @@ class Session:
             raise XlmcError(f"This state cannot be run: {self._problem}", hint="Move what it names back, or undo it")
         if self.rest is None or not self._is_at_rest:
             raise XlmcError("the run of this state is not done yet", hint="wait until it is")
-        return AtRest(self.own, self.adjustments, self.shown, self.rest)
+        return AtRest(self.own, self.adjustments, self.shown, self.rest, self.asked)
 
     # What is to be done
 
@@ -408,14 +449,14 @@ class Session:
         self.view = view
 
     @property
-    def _now(self) -> tuple[int, Adjustments]:
-        """Return what tells a state from others: the workbook, and what was changed."""
-        return id(self.own), self.adjustments
+    def _now(self) -> _Told:
+        """Return what tells a state from others: the workbook, what was changed, and how it is run."""
+        return id(self.own), self.adjustments, self.asked
 
     @property
-    def _drawn(self) -> tuple[int, Adjustments]:
-        """Return what the trials depend on: all but how answers are stated."""
-        return id(self.own), replace(self.adjustments, forecasts={})
+    def _drawn(self) -> _Told:
+        """Return what the trials that move depend on: all but how answers are stated, and how long runs at rest are."""
+        return id(self.own), replace(self.adjustments, forecasts={}), RunOptions(seed=self.asked.seed)
 
     @property
     def _compared(self) -> RunResult | None:
@@ -479,6 +520,7 @@ class Session:
             in_memory=self._of_a_run if resting else 3 * self._of_a_run,
             watched=resting or (pace.is_slow and stage == "moving"),
             draws=self._draws_shown(stage),
+            asked=self.asked,
         ).run
 
     def _draws_shown(self, stage: Stage) -> int:

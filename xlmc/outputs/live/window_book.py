@@ -20,6 +20,7 @@ from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
 from xlmc.montecarlo.definitions.evidence import Law, Within
+from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.tables.evidence_rows import check_sizes
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
 from xlmc.montecarlo.model.model import CompiledModel
@@ -49,6 +50,7 @@ __all__ = [
     "filter_rows",
     "forecast_rows",
     "known_scenario",
+    "run_row",
     "scenario_rows",
     "shapes_of",
     "stated_rows",
@@ -298,6 +300,14 @@ def book_message(model: CompiledModel) -> Message:
         "shapes": shapes_of(model),
         "z": t_quantile(math.inf, CONFIDENCE),
     }
+
+
+def run_row(model: CompiledModel, asked: RunOptions) -> dict[str, Any]:
+    """Return the trials and the seed of runs at rest, and those of the workbook."""
+    own = model.definitions.settings
+    now = asked.settings(own)
+    changed = asked != RunOptions()
+    return {"trials": now.trials, "seed": now.seed, "own": [own.trials, own.seed], "changed": changed}
 
 
 def _settings_text(model: CompiledModel) -> str:

@@ -218,7 +218,7 @@ const NONE = "none"; // what is said for a limit that is taken away
 
 /**
  * A box for one number: typed, or stepped with the arrow keys. `set(value, held)` takes it; `setRange(range)` takes two
- * ends that were typed into it, and gives why they cannot be taken. A number that `goes` is taken away by a blank box.
+ * ends that were typed into it; both give why it cannot be taken. A number that `goes` is taken away by a blank box.
  */
 class NumberBox {
   constructor(label, units, set, { hidden = "", percent = units === "%", setRange = null, goes = false } = {}) {
@@ -244,7 +244,7 @@ class NumberBox {
       this.refuse("");
     }
     this.input.disabled = off;
-    this.input.title = why || this.hint;
+    this.input.title = why ? `Computed: ${why}; type a number to replace it` : this.hint;
     this.input.classList.toggle("computed", Boolean(why));
   }
 
@@ -288,6 +288,6 @@ class NumberBox {
     this.value = value;
     this.refuse("");
     this.shown = this.input.dataset.shown = this.input.value = stepText(value, this.step);
-    this.set(value, false);
+    this.refuse(this.set(value, false) ?? "");
   }
 }

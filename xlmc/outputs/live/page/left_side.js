@@ -1,5 +1,5 @@
 "use strict";
-// The left side: a card for every assumption and every filter, and the list of checks.
+// The left side: a card for every assumption and every filter, the list of checks, and trials and seed.
 
 /** Set several numbers of one assumption or filter at once; gives the number of the change, as `Wire.set`. */
 function setAll(wire, of, name, values) {
@@ -93,7 +93,7 @@ class AssumptionCard {
         this.boxes.set(number.key, box);
         this.held.before(box.root);
       }
-      const why = number.cell && `computed in ${number.cell}`;
+      const why = number.cell; // 12 (Inputs!J8: =eta)
       this.boxes.get(number.key).update(number.value, this.stepOf(number), { off: row.frozen, why });
     }
     this.bands.hidden = row.band === null;
@@ -184,7 +184,7 @@ class FilterCard {
         this.boxes.set(limit.key, box);
         this.numbers.append(box.root);
       }
-      const why = limit.cell && `computed in ${limit.cell}`;
+      const why = limit.cell;
       this.boxes.get(limit.key).update(limit.value, this.stepOf(limit), { off: !row.used, why });
     }
     this.root.classList.toggle("changed", row.changed);
@@ -206,6 +206,7 @@ class LeftSide {
     Object.assign(this, { wire, sent, assumptions: new Map(), filters: new Map(), own: {}, shapes: {} });
     this.find = document.getElementById("find");
     for (const control of this.find.querySelectorAll("input")) control.addEventListener("input", () => this.sift());
+    this.makeRun();
   }
 
   /** Whether a handle is held. */
@@ -228,13 +229,32 @@ class LeftSide {
     this.find.lastElementChild.textContent = shown < all ? `${shown} of ${all}` : "";
   }
 
+  /** Trials and seed of the runs at rest. */
+  makeRun() {
+    const whole = (least, take) => (value) => {
+      if (!Number.isSafeInteger(value) || value < least) return `Type a whole number of at least ${least}.`;
+      take(value);
+      return "";
+    };
+    const ask = (key) => (value) => this.wire.say({ kind: "run", trials: this.run.trials, seed: this.run.seed, [key]: value });
+    this.trials = new NumberBox("Trials", "", whole(1, ask("trials")));
+    this.seed = new NumberBox("Seed", "", whole(0, ask("seed")));
+    this.back = make("button", { type: "button", class: "back", text: "As in the workbook", "aria-label": "Trials and seed as in the workbook",
+      on: { click: () => this.wire.say({ kind: "run", trials: null, seed: null }) } });
+    document.getElementById("run").append(make("div", { class: "numbers" }, this.trials.root, this.seed.root), this.back);
+  }
+
   /** A workbook that was read, again perhaps. */
   book({ shapes }) {
     this.own = shapes;
     this.shapes = { ...shapes };
   }
 
-  state({ assumptions, filters }) {
+  state({ assumptions, filters, run }) {
+    this.run = run;
+    this.trials.update(run.trials, 1);
+    this.seed.update(run.seed, 1);
+    this.back.hidden = !run.changed;
     this.rows("assumptions", AssumptionCard, assumptions, (card, row) => {
       if (!row.changed) this.shapes[row.name] = this.own[row.name];
       card.update(row, this.shapes[row.name] ?? null, this.own[row.name] ?? null);

@@ -69,7 +69,7 @@ const Live = {
     this.left.state(message);
     this.right.state(message);
     const changed = message.changes.length;
-    document.getElementById("reset").disabled = !changed;
+    document.getElementById("reset").disabled = !changed && !message.run.changed;
     for (const each of ["undo", "redo"]) document.getElementById(each).disabled = !message[each];
     this.offer(message.offered);
   },

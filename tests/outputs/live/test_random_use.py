@@ -6,7 +6,7 @@ import pytest
 from random_use import Use
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [2, 3, 5])
 def test_random_use_loses_nothing_and_shows_what_the_edited_workbook_gives(running, tmp_path, seed):
     use = Use(running, tmp_path, tmp_path / "state", seed)
     for _ in range(12):

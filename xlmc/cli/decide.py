@@ -108,7 +108,11 @@ _MEANING = (
 def _sentences(found: Decided) -> Iterator[str]:
     from xlmc.analysis.studies.decisions import of_forecast
 
+    names = " and ".join(each.name for each in found.decisions)
+    same = [each.name for each in found.run.model.forecasts if not found.does_matter(each.name)]
     for forecast in found.run.model.forecasts:
+        if forecast.name in same:
+            continue
         for least, word in ((False, "largest"), (True, "smallest")):
             best = found.best(forecast.name, least=least)
             if best is None:
@@ -123,14 +127,22 @@ def _sentences(found: Decided) -> Iterator[str]:
             if best.next is None or best.ahead is None:
                 yield f"{text}."
                 break
+            if not best.ahead.value and not best.ahead.error:
+                yield f"{text}, and the same with {best.next.answers.name}."
+                continue
             side = "below" if least else "above"
             ahead = form.spread(best.ahead).lstrip("-")
             doubt = "" if best.is_sure else ", and these trials cannot tell the two apart"
             yield f"{text}; that is {ahead} {side} the next, {best.next.answers.name}{doubt}."
+    if same:
+        are = "are" if len(found.decisions) > 1 else "is"
+        yield f"Whatever {names} {are}, these stay as they are: {'; '.join(same)}."
 
 
 def _blocks(found: Decided) -> Iterator[Block]:
-    for index in range(len(found.base.forecasts)):
+    for index, answer in enumerate(found.base.forecasts):
+        if not found.does_matter(answer.forecast.name):
+            continue
         yield _table(found, index)
         if len(found.decisions) < 3:
             figure = _trend(found, index)
@@ -139,13 +151,17 @@ def _blocks(found: Decided) -> Iterator[Block]:
 
 
 def _table(found: Decided, index: int) -> Table:
+    from xlmc.montecarlo.statistics.number_text import exact_text
     from xlmc.outputs.document.parts import Table
     from xlmc.outputs.scenario_tables import answer_heads, answer_rows
 
     answers = [found.base, *(each.answers for each in found.combinations)]
-    heads = ["Decision", *answer_heads(answers, index)[1:]]
-    rows = tuple(answer_rows(answers, index))
-    return Table(answers[0].forecasts[index].title, tuple(heads), rows, tuple(range(1, len(heads))))
+    decisions = [", ".join(filter(None, (each.name, each.units))) for each in found.decisions]
+    values = [(found.base.name, *[""] * (len(decisions) - 1))]
+    values += [tuple(map(exact_text, each.values)) for each in found.combinations]
+    heads = (*decisions, *answer_heads(answers, index)[1:])
+    rows = tuple((*at, *row[1:]) for at, row in zip(values, answer_rows(answers, index), strict=True))
+    return Table(answers[0].forecasts[index].title, heads, rows, tuple(range(len(heads))))
 
 
 def _trend(found: Decided, index: int) -> Figure | None:
@@ -177,9 +193,10 @@ def _trend(found: Decided, index: int) -> Figure | None:
     drawn = tuple(line for line in drawn if len(line.points) > 1)
     if not drawn:
         return None
+    data = Lines(drawn, answer.title, dots=True, form_upwards=answer.form)
     across = f"{first.name}, {first.units}" if first.units else first.name
     said = f"{answer.forecast.name} for the values of {' and '.join(each.name for each in found.decisions)}"
-    return Figure(Chart("", across, Lines(drawn, answer.title, dots=True), said), said)
+    return Figure(Chart("", across, data, said), said)
 
 
 def _as_json(found: Decided) -> dict[str, object]:

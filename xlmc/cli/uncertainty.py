@@ -116,6 +116,10 @@ def _report(found: TwoLoops) -> StudyReport:
 def _sentences(found: TwoLoops) -> Iterator[str]:
     for each in found.forecasts:
         for band in each.told:
+            if band.is_share and band.low.value == band.high.value in (0.0, 1.0):
+                share, draws = band.form.number(band.low.value), f"{found.confidence:g} % of the outer draws or more"
+                yield f"{_subject(each, band)} is {share} in {draws}, as far as their trials tell."
+                continue
             yield f"{_subject(each, band)} is between {_ends(each, band)} with {found.confidence:g} % confidence."
     if found.texts:
         yield f"Not told, since the answers are texts: {'; '.join(found.texts)}."
@@ -125,7 +129,9 @@ def _sentences(found: TwoLoops) -> Iterator[str]:
 
 def _subject(each: ForecastBands, band: Band) -> str:
     name = each.definition.name
-    return f"{name}: {band.number}" if band.number.startswith("P(") else f"The {band.number} of {name}"
+    if band.number.startswith("P("):
+        return f"{name}: {band.number}"
+    return f"The {band.number.removesuffix(' of yes')} of {name}"
 
 
 def _ends(each: ForecastBands, band: Band) -> str:
@@ -164,9 +170,14 @@ def _table(found: TwoLoops, each: ForecastBands) -> Table:
 
 def _texts(band: Band, *, is_spread: bool) -> Iterator[str]:
     """Yield the number of all trials and both ends; an end without an error in the digits of the other numbers."""
+    from xlmc.montecarlo.definitions.stating import Kind
+
     write = band.form.spread if is_spread else band.form.estimate
     for end in (band.pooled, band.low, band.high):
-        yield write(end) if end.error is not None else band.form.beside(end.value, band.pooled)
+        if end.error is not None or (is_spread and band.form.kind is Kind.DATE):
+            yield write(end)
+        else:
+            yield band.form.beside(end.value, band.pooled)
 
 
 def _curve(found: TwoLoops, each: ForecastBands) -> Figure:
@@ -177,7 +188,8 @@ def _curve(found: TwoLoops, each: ForecastBands) -> Figure:
     lines = tuple(Line(name, tuple(zip(values.tolist(), shares, strict=True))) for name, values in columns)
     name = each.definition.name
     said = f"{name}: the cumulative curve of all trials, and its {found.confidence:g} % band"
-    return Figure(Chart("", _title(each), Lines(lines, "Cumulative share", share=True), said), said)
+    shown = Lines(lines, "Cumulative share", share=True, form_across=each.form)
+    return Figure(Chart("", _title(each), shown, said), said)
 
 
 def _causes(found: TwoLoops) -> Table:

@@ -9,7 +9,7 @@ from xlmc.analysis.results.statements.in_words import changes_text
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import format_estimate
 from xlmc.montecarlo.statistics.number_text import count_text
-from xlmc.outputs.sheets.scenarios_sheet import POINTS, above_head, range_heads
+from xlmc.outputs.sheets.scenarios_sheet import POINTS, above_head, answer_pairs, has_ranges
 from xlmc.outputs.summary import share_text
 
 if TYPE_CHECKING:
@@ -45,7 +45,7 @@ def answer_heads(found: Sequence[ScenarioAnswers], index: int) -> list[str]:
     """Return the headings of the table of the forecast at `index`."""
     states = [each.forecasts[index] for each in found]
     above = above_head(states)
-    heads = ["Scenario", *(heading for name in range_heads(states) for heading in (name, "Difference"))]
+    heads = ["Scenario", *(heading for pair in answer_pairs(states) for heading in pair)]
     return [*heads, above, POINTS] if above else heads
 
 
@@ -53,14 +53,16 @@ def answer_rows(found: Sequence[ScenarioAnswers], index: int) -> list[tuple[str,
     """Yield a row for the workbook itself and for each scenario, of the forecast at `index`, under its
     `answer_heads`.
     """
-    above = bool(above_head([each.forecasts[index] for each in found]))
-    return [(each.name, *_cells(each.forecasts[index], above)) for each in found]
+    states = [each.forecasts[index] for each in found]
+    ranges, above = has_ranges(states), bool(above_head(states))
+    return [(each.name, *_cells(each.forecasts[index], ranges, above)) for each in found]
 
 
-def _cells(answer: ForecastAnswer, above: bool) -> list[str]:
+def _cells(answer: ForecastAnswer, ranges: bool, above: bool) -> list[str]:
     found = []
     form = answer.form
-    for key, value in (("mean", answer.mean), ("low", answer.low), ("high", answer.high)):
+    numbers = (("mean", answer.mean), ("low", answer.low), ("high", answer.high))
+    for key, value in numbers if ranges else numbers[:1]:
         change = answer.differences.get(key)
         if key == "mean" and not answer.has_range:
             found += [share_text(value), _change(change, share=True)]

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import itertools
 import math
 import re
 from xml.etree import ElementTree
@@ -8,6 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from xlmc.montecarlo.definitions.forms import Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.outputs.document.drawings import drawn, scale_of
 from xlmc.outputs.document.html_writer import picture_html
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Line, Lines
@@ -109,4 +112,26 @@ def test_ticks_are_round(values, ticks):
 def test_it_may_run_upwards():
     scale = scale_of([0.0, 10.0], 200.0, 20.0)
     assert scale(0.0) > scale(5.0) > scale(10.0)
-    assert scale.text(-0.5) == "−0.5"
+
+
+@pytest.mark.parametrize(
+    ("values", "form", "texts"),
+    [
+        ([-0.6, 0.6], Form(), ["−0.5", "0.0", "0.5"]),
+        ([242_500.0, 252_500.0], Form(Kind.CURRENCY, '"$"#,##0'), ["$244,000", "$252,000"]),
+        ([0.25, 0.4], Form(Kind.PERCENT, "0%"), ["25 %"]),
+        ([46_100.0, 46_300.0], Form(Kind.DATE, "yyyy-mm-dd"), ["2026-03-19"]),
+        ([0.0, 1.2e12], Form(), ["0", "500,000,000,000"]),
+        ([1e-9, 3e-9], Form(), ["1e−09", "1.5e−09"]),
+    ],
+)
+def test_ticks_are_written_in_the_form_of_the_numbers(values, form, texts):
+    marks = [text for _, text in scale_of(values, 0.0, 1.0, form=form).marks]
+    assert set(texts) <= set(marks)
+
+
+def test_texts_of_ticks_do_not_overlap():
+    scale = scale_of([46_100.0, 46_300.0], 0.0, 300.0, form=Form(Kind.DATE, "yyyy-mm-dd"))
+    at = [scale(tick) for tick, _ in scale.apart]
+    assert len(at) > 1
+    assert min(b - a for a, b in itertools.pairwise(at)) > 5.0 * len("2026-03-31")

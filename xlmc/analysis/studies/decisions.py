@@ -84,7 +84,13 @@ class Best:
     @property
     def is_sure(self) -> bool:
         """Whether the means of the two differ by three errors or more, or nothing else was tried."""
-        return self.ahead is None or abs(self.ahead.value) >= _SURE * (self.ahead.error or 0.0) > 0.0
+        if self.ahead is None:
+            return True
+        return self.ahead.error is not None and abs(self.ahead.value) > 0.0 and not self._is_in_doubt(self.ahead)
+
+    @staticmethod
+    def _is_in_doubt(ahead: Estimate) -> bool:
+        return abs(ahead.value) < _SURE * (ahead.error or 0.0)
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,6 +111,14 @@ class Decided:
     combinations: tuple[Combination, ...]
     impossible: dict[tuple[float, ...], str]
 
+    def does_matter(self, forecast: str) -> bool:
+        """Whether a number of a forecast's answer, which tables show, is not that of the workbook as it is with every
+        combination.
+        """
+        states = (self.base, *(each.answers for each in self.combinations))
+        found = {_numbers(of_forecast(each, forecast)) for each in states}
+        return len(found) > 1
+
     def best(self, forecast: str, *, least: bool = False) -> Best | None:
         """Return the combination with the largest mean of a forecast, or the least; None if none has a number."""
         known = [(each, _mean(each, forecast)) for each in self.combinations]
@@ -123,6 +137,12 @@ class Decided:
 
 def _mean(combination: Combination, forecast: str) -> Estimate:
     return of_forecast(combination.answers, forecast).mean
+
+
+def _numbers(answer: ForecastAnswer) -> tuple[str, ...]:
+    """Return the numbers of an answer as texts, of which no number is one, too."""
+    above = () if answer.above is None else (answer.above,)
+    return tuple(repr(each.value) for each in (answer.mean, answer.low, answer.high, *above))
 
 
 def of_forecast(answers: ScenarioAnswers, forecast: str) -> ForecastAnswer:

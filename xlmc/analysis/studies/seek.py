@@ -25,6 +25,8 @@ from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.cell_references import cell_of_reference, is_address, split_sheet
 from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+from xlmc.montecarlo.definitions.forms import Form
+from xlmc.montecarlo.model.cell_forms import forms_of
 from xlmc.montecarlo.model.labels import calculate_labels
 from xlmc.montecarlo.model.solving import unknown_of, with_solved_cells
 
@@ -61,6 +63,8 @@ class Found:
         throughout: ranges of `by` in which the cell is `to` everywhere, as finely as was looked; of each, `values` has
             both ends.
         curve: `(p,)` values of `by`, and `(p,)` what the cell is there; NaN where it has no number.
+        form: how the numbers of the cell are written.
+        form_by: how those of `by` are.
     """
 
     workbook: Workbook
@@ -75,6 +79,8 @@ class Found:
     answers: Floats
     throughout: tuple[tuple[float, float], ...]
     curve: tuple[Floats, Floats]
+    form: Form
+    form_by: Form
 
     @property
     def value(self) -> float | None:
@@ -138,6 +144,7 @@ def seek(
         ends = _shown_range(base or 0.0, values)
     at = np.linspace(*ends, _DRAWN)
     start = answers(np.full(1, base or 0.0))[0]
+    form, form_by = forms_of(workbook, (wanted, unknown))
     return Found(
         workbook=workbook,
         cell=wanted,
@@ -151,6 +158,8 @@ def seek(
         answers=answers(values),
         throughout=throughout,
         curve=(at, answers(at)),
+        form=form,
+        form_by=form_by,
     )
 
 

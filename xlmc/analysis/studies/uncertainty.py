@@ -465,7 +465,7 @@ def _ordinal(percent: float) -> str:
 def _percentiles(found: Floats, counts: NDArray[np.intp], percents: Sequence[float]) -> list[Estimate]:
     """Return percentiles of a number over the outer draws, which count by their trials."""
     alike = counts.size > 0 and bool(np.all(counts == counts[0]))
-    sample = Sample.of(found, None if alike else counts.astype(np.float64))
+    sample = Sample.of(found, None if alike else counts.astype(np.float64), two_valued=False)
     return list(percentiles(sample, percents).values())
 
 

@@ -20,6 +20,7 @@ from xlmc.montecarlo.statistics.number_text import (
     format_estimate,
     is_far,
     number_text,
+    two_digit_exponent,
 )
 
 if TYPE_CHECKING:
@@ -37,6 +38,8 @@ _MOMENT: Final = re.compile(r"[ymdhs]", re.IGNORECASE)
 _DAY: Final = "yyyy-mm-dd"
 _DAY_AND_TIME: Final = "yyyy-mm-dd hh:mm"
 _SECONDS_A_DAY: Final = 86_400
+_TICK: Final = 6
+"""Decimals of a number beside an axis; one that needs more has a power of ten."""
 _IN_PERCENT: Final = (Kind.PERCENT, Kind.YES_NO)
 _SECONDS: Final = (1, 2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 21_600, 43_200)
 _DAYS: Final = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 5000, 10_000)
@@ -118,12 +121,19 @@ class Form:
         if self.kind is Kind.DATE:
             return self._moment(value)
         scaled = self._scaled(value)
-        text = exact_text(abs(scaled)) if decimals is None or is_far(scaled) else fixed_text(abs(scaled), decimals)
+        if decimals is None:
+            text = exact_text(abs(scaled))
+        elif is_far(scaled):
+            text = number_text(abs(scaled), max(decimals + two_digit_exponent(scaled) + 1, 1))
+        else:
+            text = fixed_text(abs(scaled), decimals)
         return self._signed(text, scaled < 0.0)
 
     def beside(self, value: float, like: Estimate) -> str:
-        """Write a number without an error in the digits of another one; all of its own where it is an exact one."""
-        return self.number(value, self._decimals(like))
+        """Write a number without an error in the digits of another one; in six where its error is not known, either;
+        in all of its own where that is an exact one.
+        """
+        return self.rough(value) if like.error is None else self.number(value, self._decimals(like))
 
     def value(self, found: Estimate) -> str:
         """Return the number in the digits that its error supports, without the error."""
@@ -181,6 +191,8 @@ class Form:
         """Write a standard deviation or a difference, with its error: of dates a span of time."""
         if self.kind is not Kind.DATE:
             return self.estimate(found)
+        if not found.value and not found.error:
+            return f"0 {'s' if self.shows == 'span' else 'days'}"
         return "" if math.isnan(found.value) else span_text(found.value, found.error)
 
     def width(self, value: float) -> str:
@@ -191,8 +203,10 @@ class Form:
         """Write a number beside an axis, to so many decimals of the number itself."""
         if self.kind is Kind.DATE:
             return self._moment(value)
-        shift = 2 if self.kind in _IN_PERCENT else 0
-        return self._signed(fixed_text(abs(self._scaled(value)), max(decimals - shift, 0)), value < 0.0)
+        shift, scaled = 2 if self.kind in _IN_PERCENT else 0, abs(self._scaled(value))
+        many = is_far(scaled) or decimals > _TICK
+        text = number_text(scaled) if many else fixed_text(scaled, max(decimals - shift, 0))
+        return self._signed(text, value < 0.0)
 
     def rounded_width(self, width: float) -> float:
         """Return the width of bars near another one, in which dates and times are round; of other numbers the same."""

@@ -23,13 +23,12 @@ from xlmc.excel.address import Cell, host_of
 from xlmc.excel.formula import ir
 from xlmc.excel.functions import Kind
 from xlmc.excel.functions.values import Value
-from xlmc.excel.workbook.injection.content_types import roles
-from xlmc.excel.workbook.number_formats import cell_formats
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Forecast
 from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.stating import Kind as StatedAs
 from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.model.cell_forms import formats_of
 from xlmc.montecarlo.model.correlating import (
     copula_groups,
     copula_notices,
@@ -563,13 +562,8 @@ class CompiledModel:
     @cached_property
     def formats(self) -> dict[str, str]:
         """The number format of each forecast's cell, by name; `General` where it has none or the file does not say."""
-        book, parts = self.workbook, self.workbook.parts or self.workbook.origin
-        hosts = {each.name: host_of(each.cell) for each in self.forecasts}
-        cells = {name: (book.sheets[host.sheet].part, host.a1) for name, host in hosts.items()}
-        if not parts:
-            return dict.fromkeys(cells, "General")
-        found = cell_formats(parts, roles(parts).workbook, cells.values())
-        return {name: found[place] for name, place in cells.items()}
+        hosts = [host_of(each.cell) for each in self.forecasts]
+        return {f.name: code for f, code in zip(self.forecasts, formats_of(self.workbook, hosts), strict=True)}
 
     def check_program(self) -> Program:
         """Make the cells of the checks filters, a function of the live assumptions; others stand at their

@@ -88,7 +88,7 @@ def limit_chart(limit: FilterLimit, indexes: list[int], unit: str) -> Chart:
     upwards = f"Change of the mean{f', {unit}' if unit else ''}"
     across = f"Limit: {limit.filter} {limit.relation}"
     said = f"Change of each mean: {', '.join(line.name for line in lines)}"
-    return Chart("Change of each mean", across, Lines(lines, upwards, dots=True, now=limit.limit), said)
+    return Chart("Change of each mean", across, Lines(lines, upwards, dots=True, now=limit.limit, from_zero=True), said)
 
 
 def _bars(title: str, what: str, across: str, bars: tuple[Bar, ...]) -> Chart:

@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from html import escape
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.excel.workbook.printable import printable
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
+from xlmc.montecarlo.statistics.number_text import two_digit_exponent
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Drawing, Line, Lines, Shape
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.sheets.styles import DARK, GRID, INK, LIGHT
@@ -118,11 +121,10 @@ def _bars(chart: Chart, shown: Bars) -> Drawing:
     ends += [end for bar in shown.bars for end in bar.whisker or ()]
     across = scale_of([0.0, *ends], left, right)
     if min([0.0, *(end for end in ends if math.isfinite(end))]) == 0.0:
-        across = Scale(0.0, across.high, left, right, across.step)
+        across = replace(across, low=0.0)
     found = _title(chart)
-    for tick in across.ticks:
-        x = across(tick)
-        found += [line_to(x, top, x, bottom, GRID), text_at(x, bottom + 13, across.text(tick))]
+    found += [line_to(across(tick), top, across(tick), bottom, GRID) for tick in across.ticks]
+    found += [text_at(across(tick), bottom + 13, text) for tick, text in across.apart]
     for index, bar in enumerate(shown.bars):
         found += _bar(bar, top + row * index, row, left, across)
     found.append(line_to(across(0.0), top, across(0.0), bottom, INK))
@@ -146,19 +148,20 @@ def _bar(bar: Bar, top: float, row: float, left: float, across: Scale) -> list[s
 
 def _lines(chart: Chart, shown: Lines) -> Drawing:
     """Lines over grid lines, with their names beside them."""
-    left, right, top, bottom = 60.0, 420.0, 26.0 if chart.title else 10.0, 250.0
+    right, top, bottom = 420.0, 26.0 if chart.title else 10.0, 250.0
     points = [point for line in shown.lines for point in _finite(line)]
     known = [shown.now] if shown.now is not None else []
-    x = scale_of([*known, *(point[0] for point in points)], left, right)
     reach = [value for _, y, error in points for value in (y - (error or 0.0), y + (error or 0.0))]
-    y = scale_of([0.0, 1.0] if shown.share else [0.0, *reach], bottom, top)
+    if shown.share:
+        y = scale_of([0.0, 1.0], bottom, top, form=Form(Kind.PERCENT))
+    else:
+        y = scale_of([*[0.0] * shown.from_zero, *reach], bottom, top, form=shown.form_upwards)
+    left = max(60.0, 30.0 + _CHARACTER * max((len(text) for _, text in y.marks), default=0))
+    x = scale_of([*known, *(point[0] for point in points)], left, right, form=shown.form_across)
     found = _title(chart)
-    for tick in y.ticks:
-        found += [
-            line_to(left, y(tick), right, y(tick), GRID),
-            text_at(left - 6, y(tick) + 4, y.text(tick), anchor="end"),
-        ]
-    found += [text_at(x(tick), bottom + 15, x.text(tick)) for tick in x.ticks]
+    for tick, text in y.marks:
+        found += [line_to(left, y(tick), right, y(tick), GRID), text_at(left - 6, y(tick) + 4, text, anchor="end")]
+    found += [text_at(x(tick), bottom + 15, text) for tick, text in x.apart]
     found.append(line_to(left, bottom, right, bottom, INK))
     if shown.now is not None:
         found.append(line_to(x(shown.now), top, x(shown.now), bottom, INK, dashed=True))
@@ -288,13 +291,14 @@ def text_at(
 
 @dataclass(frozen=True, slots=True)
 class Scale:
-    """A straight axis from `low` at `start` to `high` at `stop`, with round ticks `step` apart."""
+    """A straight axis from `low` at `start` to `high` at `stop`, with round ticks `step` apart, written in a form."""
 
     low: float
     high: float
     start: float
     stop: float
     step: float
+    form: Form = PLAIN
 
     def __call__(self, value: float) -> float:
         """Return the coordinate of a number."""
@@ -306,13 +310,30 @@ class Scale:
         first, last = math.ceil(self.low / self.step - 1e-9), math.floor(self.high / self.step + 1e-9)
         return [float(f"{index * self.step:.12g}") for index in range(first, last + 1)]
 
-    def text(self, tick: float) -> str:
-        """Return the text of a tick, with a true minus sign."""
-        return f"{tick:g}".replace("-", "−")
+    @property
+    def marks(self) -> list[tuple[float, str]]:
+        """The ticks with their texts, which have a true minus sign where they are numbers."""
+        decimals = max(-two_digit_exponent(self.step), 0)
+        found = [(tick, self.form.tick(tick, decimals)) for tick in self.ticks]
+        return found if self.form.kind is Kind.DATE else [(tick, text.replace("-", "−")) for tick, text in found]
+
+    @property
+    def apart(self) -> list[tuple[float, str]]:
+        """As many of the ticks as leave their texts room beside each other."""
+        found = self.marks
+        wide = _CHARACTER * max((len(text) for _, text in found), default=0) + _CHARACTER
+        room = abs(self(self.step) - self(0.0))
+        return found[:: max(math.ceil(wide / room), 1)]
 
 
-def scale_of(values: list[float], start: float, stop: float, *, most: int = 6) -> Scale:
+_CHARACTER = 5.4
+"""The width of a digit in a text of the usual size."""
+
+
+def scale_of(values: list[float], start: float, stop: float, *, most: int = 6, form: Form = PLAIN) -> Scale:
     """Return a scale from `start` to `stop` over all finite values, with a small margin and at most `most` ticks.
+
+    The ticks of dates and times are round ones.
 
     >>> scale_of([0.0, 0.93], 0.0, 100.0).ticks
     [0.0, 0.2, 0.4, 0.6, 0.8]
@@ -325,7 +346,7 @@ def scale_of(values: list[float], start: float, stop: float, *, most: int = 6) -
     else:
         low, high = low - _ROOM * (high - low), high + _ROOM * (high - low)
     step = _round_above((high - low) / most)
-    return Scale(low, high, start, stop, step)
+    return Scale(low, high, start, stop, form.rounded_width(step), form)
 
 
 def _round_above(width: float) -> float:

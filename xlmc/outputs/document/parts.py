@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from datetime import date
 from typing import Final
 
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.outputs.sheets.cells import Shown, shown_text
 
 __all__ = [
@@ -120,9 +121,12 @@ class Lines:
     Attributes:
         lines: the first is the thickest where the others are compared with it.
         upwards: the name of the vertical axis.
-        share: the vertical axis runs from 0 to 1, in percent on a sheet; else it reaches over all points, and 0.
+        share: the vertical axis runs from 0 to 1, in percent; else it reaches over all points.
         dots: mark the points.
         now: where a dashed upright line stands.
+        from_zero: the vertical axis reaches to 0, too.
+        form_across: how the numbers of the horizontal axis are written.
+        form_upwards: how those of the vertical axis are written.
     """
 
     lines: tuple[Line, ...]
@@ -130,6 +134,9 @@ class Lines:
     share: bool = False
     dots: bool = False
     now: float | None = None
+    from_zero: bool = False
+    form_across: Form = PLAIN
+    form_upwards: Form = PLAIN
 
     @property
     def ends(self) -> tuple[float, float]:
@@ -220,14 +227,19 @@ class Table:
 
         Widths that were given are raised to those of the longest words; those of the other columns are cut for it.
         """
+        needed = self._longest_words
+        least = [count / max(_LINE, sum(needed)) for count in needed]
         if self.widths:
-            return _enough(self.widths, [count / _LINE for count in self._longest_words])
+            return _enough(self.widths, least)
         widest = _WIDEST if self.columns <= _FEW else _NARROW
         lengths = [len(head) for head in self.heads] or [0] * self.columns
         for row in self.rows:
             for index, cell in enumerate(row):
                 lengths[index] = max(lengths[index], len(cell_text(cell)))
-        return tuple(3.0 + min(length, widest) for length in lengths)
+        wished = [3.0 + min(length, widest) for length in lengths]
+        share = [each / sum(wished) for each in wished]
+        enough = all(width >= each for width, each in zip(share, least, strict=True))
+        return tuple(wished) if enough else _enough(wished, least)
 
     @property
     def crowded(self) -> float:
@@ -236,11 +248,19 @@ class Table:
 
     @property
     def _longest_words(self) -> list[int]:
-        """`(c,)` characters of the longest word in each column, with the space beside it."""
+        """`(c,)` characters of the longest word in each column, with the space beside it; a number with its error is
+        one word where the letters of the table need not be too small for that.
+        """
+        whole = self._words(whole=True)
+        return whole if sum(whole) <= _SMALL * _LINE else self._words(whole=False)
+
+    def _words(self, *, whole: bool) -> list[int]:
         found = [max(map(len, head.split()), default=0) for head in self.heads] or [0] * self.columns
+        at_right = self.at_right if whole else ()
         for row in self.rows:
             for index, cell in enumerate(row):
-                words = cell_text(cell).split() if not isinstance(cell, Drawing | Chart) else ()
+                text = cell_text(cell) if not isinstance(cell, Drawing | Chart) else ""
+                words = [text] if index in at_right else text.split()
                 found[index] = max(found[index], max((len(word) for word in words if len(word) < _WIDEST), default=0))
         return [count + _BESIDE for count in found]
 
@@ -262,6 +282,9 @@ def _enough(widths: Sequence[float], least: Sequence[float]) -> tuple[float, ...
 
 _LINE, _BESIDE = 105.0, 2
 """Characters in a line of a table as wide as the page, and those that the space between two columns takes."""
+
+_SMALL = 1.4
+"""How many times as wide as a page a table may have to be for its numbers to stay beside their errors."""
 
 _WIDEST, _NARROW, _FEW = 40, 14, 8
 """Characters of a column that may stay in one line: of a table of few columns, and of one of more."""

@@ -120,11 +120,11 @@ def _drawn(lines: list[_Line], axes: list[str]) -> Drawing:
     x = Scale(across.low, across.high, _LEFT, right, across.step)
     y = Scale(up.low, up.high, bottom, _TOP, up.step)
     found = []
-    for tick in x.ticks:
-        found += [line_to(x(tick), _TOP, x(tick), bottom, GRID), text_at(x(tick), bottom + 14, x.text(tick))]
-    for tick in y.ticks:
+    found += [line_to(x(tick), _TOP, x(tick), bottom, GRID) for tick in x.ticks]
+    found += [text_at(x(tick), bottom + 14, text) for tick, text in x.apart]
+    for tick, text in y.marks:
         found += [line_to(_LEFT, y(tick), right, y(tick), GRID)]
-        found.append(text_at(_LEFT - 6, y(tick) + 4, y.text(tick), anchor="end"))
+        found.append(text_at(_LEFT - 6, y(tick) + 4, text, anchor="end"))
     for number, line in enumerate(lines):
         drawn = [(x(a), y(b)) for a, b in line.points]
         if len(drawn) == 1:

@@ -69,6 +69,10 @@ _TABLE, _SMALLEST = 8.5, 6.0
 """Points of the letters of a table, and of one whose words would not stay whole else."""
 
 
+_WHOLE: Final = 12
+"""Rows of a table up to which it stays on one page."""
+
+
 def pdf_bytes(document: Document) -> bytes:
     """Return the document as PDF.
 
@@ -171,9 +175,12 @@ def _table(table: Table) -> str:
     rows = "".join(f"  {', '.join(_cell(cell) for cell in row)},\n" for row in table.rows)
     inner = f"table(columns: ({columns},), align: ({aligned},), {top}\n{rows})"
     figure = f"#figure(kind: table, caption: [#{_text(table.caption)}], {inner})"
-    if table.crowded == 1.0:
-        return figure
-    return f"#[#show table: set text(size: {max(_TABLE / table.crowded, _SMALLEST):.3g}pt)\n{figure}]"
+    looks = []
+    if table.crowded > 1.0:
+        looks.append(f"#show table: set text(size: {max(_TABLE / table.crowded, _SMALLEST):.3g}pt)")
+    if len(table.rows) <= _WHOLE and not any(isinstance(cell, Drawing | Chart) for row in table.rows for cell in row):
+        looks.append("#show figure: set block(breakable: false)")
+    return "\n".join(["#[", *looks, f"{figure}]"]) if looks else figure
 
 
 def _cell(content: Content) -> str:

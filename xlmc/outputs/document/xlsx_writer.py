@@ -5,9 +5,11 @@ What charts are drawn from stands on a second sheet. Pictures, which a sheet of 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Final
 
+from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.outputs.document.drawings import COLOURS
 from xlmc.outputs.document.parts import (
     Bars,
@@ -148,8 +150,8 @@ def _line_chart(book: Workbook, chart: Chart, shown: Lines, numbers: Page) -> Ex
     made = straight(book.add_chart({"type": "scatter", "subtype": "straight"}))
     for index, line in enumerate(shown.lines):
         points = [(point[0], point[1]) for point in line.points]
-        spread = spread_format(points[-1][0] - points[0][0])
-        share = "0.00%" if shown.share else "General"
+        spread = spread_format(points[-1][0] - points[0][0], shown.form_across)
+        share = "0.00%" if shown.share else _numbers_format(shown)
         first, last, column = _columns(numbers, (line.name, shown.upwards), points, (spread, share))
         made.add_series(
             {
@@ -163,9 +165,19 @@ def _line_chart(book: Workbook, chart: Chart, shown: Lines, numbers: Page) -> Ex
     low, high = shown.ends
     made.set_x_axis({**across(), "name": no_reference(chart.across), **bounds(low, high)})
     vertical = upwards(no_reference(shown.upwards), "0%" if shown.share else "General")
+    if not shown.share and shown.form_upwards != PLAIN:
+        vertical["num_format"] = _numbers_format(shown)
     made.set_y_axis({**vertical, **({"min": 0, "max": 1} if shown.share else {})})
     made.set_legend({"position": "right"})
     return made
+
+
+def _numbers_format(shown: Lines) -> str:
+    """Return the format of the numbers of the vertical axis, in digits that tell its ends apart."""
+    if shown.form_upwards == PLAIN:
+        return "General"
+    heights = [point[1] for line in shown.lines for point in line.points if math.isfinite(point[1])]
+    return spread_format(max(heights) - min(heights), shown.form_upwards) if heights else "General"
 
 
 def _bar_chart(book: Workbook, chart: Chart, shown: Bars, numbers: Page) -> ExcelChart:

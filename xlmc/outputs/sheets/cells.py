@@ -193,10 +193,10 @@ def _error_format(found: Estimate, digits: str, form: Form = PLAIN) -> str:
 
 
 def _span_format(days: float, error: float | None) -> str:
-    """Return the format of a span in days: days in the digits of the error, or hours where it is less than a day."""
+    """Return the format of a span in days: days in the digits of the error, or hours where it is up to a day."""
     decimals = decimals_of(error or days)
-    if not math.isfinite(days) or abs(days) < 1.0 or decimals is None:
-        return "[h]:mm:ss"
+    if not math.isfinite(days) or 0.0 <= days < 1.0 or decimals is None:
+        return "[h]:mm:ss"  # of a span below 0 Excel shows ####
     return f'#,##0{_fraction(max(decimals, 0))}" days"'
 
 
@@ -297,6 +297,10 @@ def _text_in_form(value: float, number_format: str, date1904: bool) -> str:
         sign = "-" if value < 0.0 and any(digit in text for digit in "123456789") else ""
         return f"{sign}{found['before'] or ''}{text}{found['after'] or ''}"
     try:
-        return parse_format(number_format).number(value, date1904)
+        shown = parse_format(number_format)
     except FormatError as error:
         raise ValueError(f"no number format of a result sheet: {number_format!r}") from error
+    try:
+        return shown.number(value, date1904)
+    except FormatError:  # before the first day, or after the last: Excel shows ####
+        return number_text(value)

@@ -27,7 +27,8 @@ __all__ = [
     "POINTS",
     "WIDTHS",
     "above_head",
-    "range_heads",
+    "answer_pairs",
+    "has_ranges",
     "scenario_sentences",
     "scenario_warnings",
     "write_scenario_tables",
@@ -75,10 +76,11 @@ def write_scenario_tables(page: Page, found: Sequence[ScenarioAnswers], impossib
         page.heading(forecast.title)
         states = [each.forecasts[index] for each in found]
         above = above_head(states)
-        answers = [head for name in range_heads(states) for head in (name, "±", "Difference", "±")]
+        answers = [head for pair in answer_pairs(states) for name in pair for head in (name, "±")]
         shares = [above, "±", POINTS, "±"] if above else []
         page.table(
-            ["Scenario", *answers, *shares], [_answers(each.name, each.forecasts[index], bool(above)) for each in found]
+            ["Scenario", *answers, *shares],
+            [_answers(each.name, each.forecasts[index], has_ranges(states), bool(above)) for each in found],
         )
     page.row += 1
     for sentence in scenario_sentences(found):
@@ -122,10 +124,20 @@ def _accepted(each: ScenarioAnswers) -> list[Shown]:
     return [Shown(each.name, look="name"), cells.count(each.run.accepted), *cells.share(each.acceptance), *change]
 
 
-def range_heads(states: Sequence[ForecastAnswer]) -> list[str]:
-    """Return the headings of mean and central range of a forecast in all states, which may ask for different ranges."""
+def answer_pairs(states: Sequence[ForecastAnswer]) -> list[tuple[str, str]]:
+    """Return the headings of each number of a forecast in all states, and of its difference: of its mean and central
+    range, for which states may ask differently, or of the one share that an answer of no number has.
+    """
+    if not has_ranges(states):
+        return [("Probability" if states[0].text is None else "Share", POINTS)]
     shares = {percent(each.forecast.central) for each in states}
-    return ["Mean", f"{shares.pop()} range from" if len(shares) == 1 else "Central range from", "to"]
+    names = ["Mean", f"{shares.pop()} range from" if len(shares) == 1 else "Central range from", "to"]
+    return [(name, "Difference") for name in names]
+
+
+def has_ranges(states: Sequence[ForecastAnswer]) -> bool:
+    """Whether the answers of a forecast are numbers in any state."""
+    return any(each.has_range for each in states)
 
 
 def above_head(states: Sequence[ForecastAnswer]) -> str:
@@ -156,9 +168,10 @@ def _different_wishes(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
             yield f"Central ranges of {name!r}: {', '.join(said)}."
 
 
-def _answers(name: str, answer: ForecastAnswer, above: bool) -> list[Shown]:
+def _answers(name: str, answer: ForecastAnswer, ranges: bool, above: bool) -> list[Shown]:
     found = [Shown(name, look="name")]
-    for key, value in (("mean", answer.mean), ("low", answer.low), ("high", answer.high)):
+    numbers = (("mean", answer.mean), ("low", answer.low), ("high", answer.high))
+    for key, value in numbers if ranges else numbers[:1]:
         change = answer.differences.get(key)
         if not answer.has_range:
             both = [value, change] if key == "mean" else [None, None]

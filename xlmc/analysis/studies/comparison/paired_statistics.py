@@ -44,6 +44,9 @@ __all__ = [
     "standard_deviation_of",
 ]
 
+_ROUNDING: Final = 1e-13
+"""The part of two numbers up to which their difference, or its error, is what rounding left of 0."""
+
 Floats = NDArray[np.float64]
 Bools = NDArray[np.bool_]
 Indices = NDArray[np.intp]
@@ -288,6 +291,8 @@ class Pair:
         step = max(first.influence.spacing, second.influence.spacing)
         if step and self.apart.size:
             error = max(error, min(step, float(self.apart.std())))
+        noise = _ROUNDING * max(abs(first.estimate.value), abs(second.estimate.value))
+        value, error = (0.0 if abs(each) <= noise else each for each in (value, error))
         units = min(n, self._replicates) if self._size else n
         found = with_error(value, error, units - 1.0, 0.95, n)
         if first.hits is None or second.hits is None or self._same_number:

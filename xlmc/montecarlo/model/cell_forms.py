@@ -1,0 +1,30 @@
+"""How the numbers of cells are written, as their number formats say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from xlmc.excel.address import Cell
+from xlmc.excel.workbook.injection.content_types import roles
+from xlmc.excel.workbook.number_formats import cell_formats
+from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions.forms import Form, kind_of_format
+from xlmc.montecarlo.definitions.stating import Kind
+
+__all__ = ["formats_of", "forms_of"]
+
+
+def formats_of(workbook: Workbook, cells: Iterable[Cell]) -> list[str]:
+    """Return the number format of each cell; `General` where it has none or the file does not say."""
+    places = [(workbook.sheets[cell.sheet].part, cell.a1) for cell in cells]
+    parts = workbook.parts or workbook.origin
+    if not parts:
+        return ["General"] * len(places)
+    found = cell_formats(parts, roles(parts).workbook, places)
+    return [found[place] for place in places]
+
+
+def forms_of(workbook: Workbook, cells: Iterable[Cell]) -> list[Form]:
+    """Return the form of each cell's numbers: a date, a percentage or money where its format shows one."""
+    codes = formats_of(workbook, cells)
+    return [Form(kind_of_format(code) or Kind.NUMBER, code, date1904=workbook.date1904) for code in codes]

@@ -5,6 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from xlmc.montecarlo.definitions.forms import Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.outputs.histogram import histogram
 
 RANDOM = np.random.default_rng(7)
@@ -117,3 +119,31 @@ def test_labels_stand_at_round_lower_ends(values, labels):
     assert all(float(text.replace(",", "")) == pytest.approx(edge) for edge, text in shown)
     assert [text for _, text in shown][: len(labels)] == labels
     assert len(shown) <= 12
+
+
+NORMAL = np.random.default_rng(3).normal(size=20_000)
+DAYS = np.round(46_600 + 20 * NORMAL)
+WORKING_DAYS = DAYS[(DAYS % 7 != 0) & (DAYS % 7 != 1)]
+
+
+@pytest.mark.parametrize(
+    ("values", "kind", "width"),
+    [
+        (WORKING_DAYS, Kind.DATE, 7.0),  # five working days each
+        (DAYS, Kind.DATE, 5.0),
+        (np.round((10 + NORMAL) * 2.5) / 2.5, Kind.NUMBER, 0.4),  # 0.2 would leave every second bar empty
+        (np.round((100 + 30 * NORMAL) / 3) * 3, Kind.NUMBER, 3.0),
+        (np.round(10 + NORMAL, 1), Kind.NUMBER, 0.2),
+        (np.round((10 + 0.1 * NORMAL) * 20) / 20, Kind.CURRENCY, 0.05),
+    ],
+)
+def test_bars_hold_equally_many_points_of_a_grid(values, kind, width):
+    form = Form(kind, "yyyy-mm-dd" if kind is Kind.DATE else "General")
+    bins = histogram(values, *np.percentile(values, [24.5, 75.5]), form)
+    assert bins.width == width
+    inner = bins.edges[(bins.edges > np.percentile(values, 10)) & (bins.upper_edges < np.percentile(values, 90))]
+    points = np.unique(values) + 1e-9
+    held = [np.count_nonzero((points >= edge) & (points < edge + width)) for edge in inner]
+    assert len(held) > 3
+    assert len(set(held)) == 1
+    assert int((bins.inside + bins.outside).sum()) + bins.below + bins.above == values.size

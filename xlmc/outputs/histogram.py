@@ -5,6 +5,9 @@ more than 60 bins over the range shown and about 10 at least; 1 where all trials
 begin at multiples of their width, so that a limit such as 0 or 0.25 falls between two bins, not into one, and hold
 their lower end but not their upper.
 
+**Grid.** Trials that lie on a grid, such as days, cents or tenths, would look like a comb if some bins held more points
+of the grid than others: bins are some steps of it wide. Working days, of which a week lacks some, have whole weeks.
+
 **Range shown.** All trials, unless some lie more than five interquartile ranges outside the quartiles; those are not
 drawn, for they would leave the rest in one bar, but counted as below and above.
 
@@ -54,6 +57,11 @@ _LONGEST_LABEL = 24
 _FENCE, _VAST = 5.0, 1e300
 _MOST_DECIMALS, _LONGEST = 6, 1e15
 """A label with more decimals, or of a larger number, has a power of ten."""
+
+_LEAST_ON_GRID, _ON_A_POINT, _ON_GRID = 200, 4, 1e-6
+"""Values that show a grid, values on each of its points, and how far they may lie beside it, in its steps."""
+
+_WEEK = 7
 
 _FINEST = 1e-9
 """The narrowest bin, as a share of the largest value: a finer one would show rounding."""
@@ -139,11 +147,15 @@ def histogram(values: Values, low: float, high: float, form: Form = PLAIN) -> Hi
         return None
     first, last = _shown(x)
     width = form.rounded_width(_width(x, first, last))
+    grid = _grid_of(x)
+    if grid is not None:
+        width = _on_grid(width, grid, is_date=form.kind is Kind.DATE)
     start, stop = math.floor(first / width), math.floor(last / width) + 1
     step = _step(width, start, stop, form)
     start, stop = step * math.floor(start / step), step * math.ceil(stop / step)
     edges = multiples(width, start, stop - start + 1)
-    reached = np.searchsorted(x, edges, side="left")
+    rounding = 0.0 if grid is None else _ON_GRID * grid.step
+    reached = np.searchsorted(x, edges - rounding, side="left")
     central = reached.clip(np.searchsorted(x, low, side="left"), np.searchsorted(x, high, side="right"))
     release(x)
     inside = np.diff(central)
@@ -229,6 +241,45 @@ def _shown(x: Floats) -> tuple[float, float]:
     if last < first:  # all of them vast
         return _sane(x[0]), _sane(x[-1])
     return _sane(x[first]), _sane(x[last])
+
+
+@dataclass(frozen=True, slots=True)
+class _Grid:
+    """The step between neighbouring points of a grid, and the points that occur, `(d,)`."""
+
+    step: float
+    points: Floats
+
+
+def _grid_of(x: Floats) -> _Grid | None:
+    """Return the grid that ascending values lie on, where each of its points has several of them; otherwise None."""
+    if x.size < _LEAST_ON_GRID:
+        return None
+    few = np.unique(x[:: max(x.size // _LEAST_ON_GRID, 1)])
+    if few.size < 3 or few.size > _LEAST_ON_GRID // 2:
+        return None  # too many different values, which a few of them show
+    points = np.unique(x)
+    if x.size < _ON_A_POINT * points.size:
+        return None
+    gaps = np.diff(points)
+    step = float(gaps.min())
+    steps = gaps / step
+    if step <= _FINEST * max(abs(points[0]), abs(points[-1])) or np.any(np.abs(steps - np.round(steps)) > _ON_GRID):
+        return None
+    return _Grid(step, points)
+
+
+def _on_grid(width: float, grid: _Grid, *, is_date: bool) -> float:
+    """Return the width of bins, near another one, that hold equally many points of the grid."""
+    days = np.unique(np.round(grid.points) % _WEEK)
+    if is_date and grid.step == 1.0 and days.size < _WEEK and grid.points[-1] - grid.points[0] > 2 * _WEEK:
+        return _WEEK * max(round(width / _WEEK), 1) if width > 1.0 else width
+    count = width / grid.step
+    if count >= 1.0 - _ON_GRID and abs(count - round(count)) <= _ON_GRID * count:
+        return width
+    near = range(max(math.floor(count), 1), 2 * math.ceil(count) + 1)
+    widths = [float(f"{steps * grid.step:.9g}") for steps in near]
+    return next((each for each in widths if _mantissa(each) in _ROUND), widths[-1 if len(widths) == 1 else 0])
 
 
 def _sane(value: float) -> float:

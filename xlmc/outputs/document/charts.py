@@ -6,6 +6,8 @@ import math
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.studies.sensitivity.measures import noise
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Line, Lines, Shape
 from xlmc.outputs.filter_effect import shapes_of
 from xlmc.outputs.summary import shares_of
@@ -55,8 +57,9 @@ def tornado_chart(found: ForecastSensitivity, most: int, title: str) -> Chart:
         )
         for bar in found.bars[:most]
     )
-    units = f", {found.units}" if found.units else ""
-    return _bars(title, title, f"Change{units} (light: at 10 %, dark: at 90 %)", bars)
+    units = f", {found.change_units}" if found.change_units else ""
+    form = PLAIN if found.form.kind in (Kind.DATE, Kind.YES_NO) else found.form
+    return _bars(title, title, f"Change{units} (light: at 10 %, dark: at 90 %)", bars, form)
 
 
 def shares_chart(figure: Figure) -> Chart:
@@ -91,8 +94,8 @@ def limit_chart(limit: FilterLimit, indexes: list[int], unit: str) -> Chart:
     return Chart("Change of each mean", across, Lines(lines, upwards, dots=True, now=limit.limit, from_zero=True), said)
 
 
-def _bars(title: str, what: str, across: str, bars: tuple[Bar, ...]) -> Chart:
-    return Chart(title, across, Bars(bars), f"{what}: {', '.join(bar.name for bar in bars)}", 125.0)
+def _bars(title: str, what: str, across: str, bars: tuple[Bar, ...], form: Form = PLAIN) -> Chart:
+    return Chart(title, across, Bars(bars, form), f"{what}: {', '.join(bar.name for bar in bars)}", 125.0)
 
 
 def _share(name: str, found: Estimate, pale: bool) -> Bar:

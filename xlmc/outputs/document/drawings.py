@@ -119,7 +119,7 @@ def _bars(chart: Chart, shown: Bars) -> Drawing:
     bottom = top + row * len(shown.bars)
     ends = [end for bar in shown.bars for piece in bar.pieces for end in piece[:2]]
     ends += [end for bar in shown.bars for end in bar.whisker or ()]
-    across = scale_of([0.0, *ends], left, right)
+    across = scale_of([0.0, *ends], left, right, form=shown.form)
     if min([0.0, *(end for end in ends if math.isfinite(end))]) == 0.0:
         across = replace(across, low=0.0)
     found = _title(chart)

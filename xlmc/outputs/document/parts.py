@@ -101,9 +101,10 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Bars:
-    """Bars from left to right, the first on top, with a line at 0."""
+    """Bars from left to right, the first on top, with a line at 0; the axis shows numbers in a form."""
 
     bars: tuple[Bar, ...]
+    form: Form = PLAIN
 
 
 @dataclass(frozen=True, slots=True)

@@ -168,8 +168,10 @@ def bar_chart(
     return _finish(chart, title)
 
 
-def tornado_chart(book: Workbook, at: TableAt, title: str, axis: str, low: int, high: int) -> ChartBar:
-    """Two columns of a table, the changes at either end, from a common line at 0."""
+def tornado_chart(
+    book: Workbook, at: TableAt, title: str, axis: str, low: int, high: int, number: str = "General"
+) -> ChartBar:
+    """Two columns of a table, the changes at either end, from a common line at 0; the axis shows them in a format."""
     chart = book.add_chart({"type": "bar"})
     for column, colour in ((low, LIGHT), (high, DARK)):
         chart.add_series(
@@ -183,7 +185,7 @@ def tornado_chart(book: Workbook, at: TableAt, title: str, axis: str, low: int, 
                 "overlap": 100,
             }
         )
-    _axes(chart, axis, "General")
+    _axes(chart, axis, number)
     chart.set_legend({"position": "right", "font": FONT})
     return _finish(chart, title)
 
@@ -213,7 +215,9 @@ def _axes(chart: ChartBar, axis: str, number: str) -> None:
     )
 
 
-def spider_chart(book: Workbook, at: TableAt, title: str, axis: str, first: int, last: int) -> ChartLine:
+def spider_chart(
+    book: Workbook, at: TableAt, title: str, axis: str, first: int, last: int, number: str = "General"
+) -> ChartLine:
     """Chart the changes over the percentiles, which are the headings of the columns from `first` to `last`."""
     chart = straight(book.add_chart({"type": "line"}))
     for index in range(min(MOST_LINES, at.last - at.first + 1)):
@@ -227,7 +231,7 @@ def spider_chart(book: Workbook, at: TableAt, title: str, axis: str, first: int,
         )
     chart.set_x_axis({"name": "Assumption at this percentile of its own distribution", **_axis(), "line": AXIS})
     chart.set_y_axis(
-        {"name": no_reference(axis), **_axis(upwards=True), "num_format": axis_format("General"), **_GRIDLINES}
+        {"name": no_reference(axis), **_axis(upwards=True), "num_format": axis_format(number), **_GRIDLINES}
     )
     chart.set_legend({"position": "right", "font": FONT})
     return _finish(chart, title)

@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.analysis.studies.sensitivity.influences import MEASURED
 from xlmc.analysis.studies.sensitivity.measures import Noise, noise
+from xlmc.montecarlo.definitions.forms import PLAIN
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
@@ -211,7 +213,13 @@ def _brief(forecast: ForecastSensitivity) -> list[str] | None:
 
 
 def _base_text(found: ForecastSensitivity) -> str:
-    return "" if found.base is None else f" of {found.base:.6g} {found.units}".rstrip()
+    return f" of {found.base_text}" if found.base_text else ""
+
+
+def _change_format(found: ForecastSensitivity) -> str:
+    """Return the format of changes of a forecast; of dates they are days."""
+    widest = found.bars[0].span if found.bars else 0.0
+    return cells.spread_format(widest, PLAIN if found.form.kind in (Kind.DATE, Kind.YES_NO) else found.form)
 
 
 def _is_bent(found: ForecastSensitivity) -> bool:
@@ -337,11 +345,11 @@ def write_moves(page: Page, found: ForecastSensitivity) -> TableAt:
         "Cases rejected by filters",
     ]
     header, shown = page.row, found.bars[:ROWS]
-    page.table(headers, [_move_row(bar, found.base or 0.0, found.bars[0].span) for bar in shown])
+    page.table(headers, [_move_row(bar, found.base or 0.0, _change_format(found)) for bar in shown])
     return TableAt(page.name, header, header + 1, header + min(len(shown), _DRAWN))
 
 
-def _move_row(bar: Bar, base: float, widest: float) -> list[Shown]:
+def _move_row(bar: Bar, base: float, changed: str) -> list[Shown]:
     digits = cells.spread_format(bar.inputs[-1] - bar.inputs[0])
     changes = [None if answer is None else answer - base for answer in bar.answers]
     rises = "–" if bar.monotonic is None else "yes" if bar.monotonic else "no"
@@ -349,7 +357,7 @@ def _move_row(bar: Bar, base: float, widest: float) -> list[Shown]:
         Shown(bar.assumption, look="name"),
         Shown(bar.units),
         *(Shown(value, digits) for value in (bar.base, bar.inputs[0], bar.inputs[-1])),
-        *(Shown(change, cells.spread_format(widest)) for change in changes),
+        *(Shown(change, changed) for change in changes),
         Shown(rises, look="moved" if bar.monotonic is False else "number"),
         Shown(f"{sum(bar.rejected)} of {len(bar.rejected)}", look="number"),
     ]
@@ -357,12 +365,13 @@ def _move_row(bar: Bar, base: float, widest: float) -> list[Shown]:
 
 def move_charts(book: Workbook, at: TableAt, found: ForecastSensitivity) -> list[Any]:
     """Return the charts: tornado and spider."""
-    units = f" ({found.units})" if found.units else ""
+    units = f" ({found.change_units})" if found.change_units else ""
     axis = f"Change of the forecast from its base case{units}"
     first, last = _CHANGES, _CHANGES + 4
+    number = "General" if found.form == PLAIN else _change_format(found)
     return [
-        tornado_chart(book, at, "Tornado", axis, first, last),
-        spider_chart(book, at, "Spider", f"Change from the base case{units}", first, last),
+        tornado_chart(book, at, "Tornado", axis, first, last, number),
+        spider_chart(book, at, "Spider", f"Change from the base case{units}", first, last, number),
     ]
 
 

@@ -94,6 +94,7 @@ def _analyse(
                 omitted=len(model.live) - len(names),
                 base=moves.base[index],
                 bars=moves.bars[index],
+                form=simulation.results[forecast.name].form,
             )
             for index, forecast, each, names in zip(wanted, forecasts, found, chosen.names, strict=True)
         ),

@@ -9,6 +9,8 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate
 
 __all__ = [
@@ -129,6 +131,7 @@ class ForecastSensitivity:
         omitted: live assumptions that were not measured, because the first look found less influence.
         base: the forecast with every assumption at its base value; None where that is no number.
         bars: tornado and spider, by `span`, the widest first; of more than 20 assumptions, the widest 20.
+        form: how its numbers are written.
     """
 
     forecast: str
@@ -138,6 +141,21 @@ class ForecastSensitivity:
     omitted: int
     base: float | None
     bars: tuple[Bar, ...]
+    form: Form = PLAIN
+
+    @property
+    def change_units(self) -> str:
+        """The units of a change of it; empty where it has none of its own."""
+        return "days" if self.form.kind is Kind.DATE else self.units
+
+    @property
+    def base_text(self) -> str:
+        """The forecast at the base case, with its units; empty where that is no number."""
+        if self.base is None:
+            return ""
+        if self.form.kind is Kind.YES_NO:
+            return "yes" if self.base else "no"
+        return f"{self.form.number(self.base)} {self.units}".rstrip()
 
 
 @dataclass(frozen=True, slots=True)

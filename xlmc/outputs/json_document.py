@@ -395,7 +395,9 @@ def _pair(pair: Pair) -> Json:
 
 
 def _as_json(value: Any) -> Any:
-    """Dataclasses as objects, tuples as lists, estimates with their reasons, and null for what is no number."""
+    """Dataclasses as objects, without the forms of numbers, tuples as lists, estimates with their reasons, and null
+    for what is no number.
+    """
     if isinstance(value, Estimate):
         return estimate_json(value)
     if isinstance(value, float):
@@ -404,7 +406,8 @@ def _as_json(value: Any) -> Any:
         return value
     if isinstance(value, tuple | list):
         return [_as_json(each) for each in value]
-    return {field.name: _as_json(getattr(value, field.name)) for field in fields(value)}
+    found = ((field.name, getattr(value, field.name)) for field in fields(value))
+    return {name: _as_json(each) for name, each in found if not isinstance(each, Form)}
 
 
 def estimate_json(found: Estimate) -> _EstimateJson:

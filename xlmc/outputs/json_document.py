@@ -34,6 +34,7 @@ from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.seal import sealed_json
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import write_workbook
+from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.statistics import Estimate, proportion
 from xlmc.montecarlo.statistics.estimate import finite
 from xlmc.outputs.filter_effect import Marginal, filter_effect_of

@@ -114,6 +114,7 @@ COMMANDS = [
     "compare",
     "screen",
     "decide",
+    "optimise",
     "methods",
     "stability",
     "uncertainty",

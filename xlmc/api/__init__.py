@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from xlmc.api.books import check, convert, replay, seek, verify
 from xlmc.api.models import Model, Simulation, load, model, open_run
-from xlmc.api.studies import compare, decide, fit, methods, screen, sensitivities, stability, uncertainty
+from xlmc.api.studies import compare, decide, fit, methods, optimise, screen, sensitivities, stability, uncertainty
 
 __all__ = [
     "Model",
@@ -21,6 +21,7 @@ __all__ = [
     "methods",
     "model",
     "open_run",
+    "optimise",
     "replay",
     "screen",
     "seek",

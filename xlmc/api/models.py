@@ -22,6 +22,7 @@ from xlmc.montecarlo.definitions.run_options import RunArguments, RunOptions
 from xlmc.montecarlo.model import loading
 
 if TYPE_CHECKING:
+    from xlmc.analysis.studies.optimising import OptimiseArguments, Optimised
     from xlmc.excel.own_functions import OwnFunctions
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.definitions import Assumption, Check, Filter, Forecast
@@ -305,6 +306,12 @@ class Model:
             refuse_no_scenarios(self._compiled)
         run = run_model(self._compiled, asked, progress=progress, tell=tell)
         return Simulation(run if self._changes is None else self._changes.named_in(run), self._changes)
+
+    def optimise(self, **options: Unpack[OptimiseArguments]) -> Optimised:
+        """Find the decisions with which a statistic of a forecast is largest, or smallest: see `xlmc.optimise`."""
+        from xlmc.analysis.studies.optimising import optimise
+
+        return optimise(self._compiled, **options)
 
 
 def load(path: str | Path, *, feeds: Mapping[str, str] | None = None, functions: str | Path | None = None) -> Model:

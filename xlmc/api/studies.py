@@ -15,12 +15,13 @@ if TYPE_CHECKING:
     from xlmc.analysis.studies.decisions import DecideArguments, Decided
     from xlmc.analysis.studies.fitting import Fitting
     from xlmc.analysis.studies.methods import Study
+    from xlmc.analysis.studies.optimising import OptimiseArguments, Optimised
     from xlmc.analysis.studies.screening import ScreenArguments, Screening
     from xlmc.analysis.studies.sensitivity import Sensitivities
     from xlmc.analysis.studies.stability import Stability
     from xlmc.analysis.studies.uncertainty import TwoLoops, UncertaintyArguments
 
-__all__ = ["compare", "decide", "fit", "methods", "screen", "sensitivities", "stability", "uncertainty"]
+__all__ = ["compare", "decide", "fit", "methods", "optimise", "screen", "sensitivities", "stability", "uncertainty"]
 
 
 def sensitivities(run: Simulation, *, assumptions: Collection[str] = ()) -> Sensitivities:
@@ -170,6 +171,23 @@ def decide(model: Model, names: Iterable[str] = (), **options: Unpack[DecideArgu
     from xlmc.analysis.studies.decisions import decide
 
     return decide(model._compiled, names, **options)
+
+
+def optimise(model: Model, **options: Unpack[OptimiseArguments]) -> Optimised:
+    """Find the decisions with which a statistic of a forecast is largest, or smallest, and how sure that is.
+
+    Args:
+        model: of a workbook with a table `xlmc_decisions`; it stays as it is.
+        options: `maximise` or `minimise`, `subject_to`, `decisions`, `indifference`, `runs`, `trials`, `seed`,
+            `engine`, `jobs` and `tell`, which `xlmc.analysis.studies.optimising.optimise.optimise` describes.
+
+    Raises:
+        DefinitionError: the workbook has no decisions.
+        SimulationError: what is asked for is not understood, or no combination meets what is required of decisions.
+    """
+    from xlmc.analysis.studies.optimising import optimise
+
+    return optimise(model._compiled, **options)
 
 
 def uncertainty(model: Model, **options: Unpack[UncertaintyArguments]) -> TwoLoops:

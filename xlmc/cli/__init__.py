@@ -1,6 +1,6 @@
 """The command line: `xlmc new`, `xlmc prepare`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc calculate`,
 `xlmc simulate`, `xlmc open`, `xlmc report`, `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`,
-`xlmc stability`, `xlmc uncertainty`, `xlmc seek`, `xlmc decide`.
+`xlmc stability`, `xlmc uncertainty`, `xlmc seek`, `xlmc decide`, `xlmc optimise`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it is; 2 bad input, with the cell and what
 to do; 130 interrupted by Ctrl-C; 143 ended by SIGTERM. Modules here import what costs time inside their functions.
@@ -30,6 +30,7 @@ from xlmc.cli.methods import methods
 from xlmc.cli.mistakes import did_you_mean, mistake
 from xlmc.cli.new import new
 from xlmc.cli.open import open_window
+from xlmc.cli.optimise import optimise
 from xlmc.cli.options import OneOf
 from xlmc.cli.prepare import prepare_book
 from xlmc.cli.replay import replay
@@ -174,6 +175,7 @@ for _command in (
     compare,
     screen,
     decide,
+    optimise,
     methods,
     stability,
     uncertainty,

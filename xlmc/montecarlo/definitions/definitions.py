@@ -271,13 +271,21 @@ def _said(given: Parameter) -> str:
 
 @dataclass(frozen=True, slots=True)
 class Decision:
-    """A cell that a person decides on: a run takes what it holds, and a study tries its values."""
+    """A cell that a person decides on: a run takes what it holds, and a study tries its values.
+
+    Attributes:
+        values: those that a table of decisions tries: listed, or from the least to the largest.
+        between: the least and the largest, where any value between them may be chosen; None where the values are all.
+        listed: whether they were listed one by one, so that neighbours need not be alike.
+    """
 
     name: str
     cell: Cell
     values: tuple[float, ...]
     row: Cell
     units: str = ""
+    between: tuple[float, float] | None = None
+    listed: bool = False
 
 
 @dataclass(frozen=True, slots=True)

@@ -467,13 +467,14 @@ class CompiledModel:
         engine: str = "numpy",
         plan: SamplingPlan | None = None,
         filler: Filler | None = None,
+        draws: Mapping[str, Draw] | None = None,
     ) -> Sampler:
         """Make the draws, block by block; for one thread. They are the same for every engine; by default independent.
 
-        With a filler, its uniforms are taken instead of the seed's.
+        With a filler, its uniforms are taken instead of the seed's; `draws` are taken instead of the model's.
         """
-        draws = self.draws.__getitem__
-        stages = [DrawStage(tuple(map(draws, names)), dynamic=i > 0) for i, names in enumerate(self.needed.stages)]
+        draw_named = (self.draws if draws is None else draws).__getitem__
+        stages = [DrawStage(tuple(map(draw_named, names)), dynamic=i > 0) for i, names in enumerate(self.needed.stages)]
         parameters = [dynamic_parameters(stage.draws, self.lowering, block) for stage in stages[1:]]
         return Sampler(seed, stages, self.groups, parameters, block, plan, filler or ENGINES[engine].filler)
 

@@ -26,7 +26,7 @@ _BY_RANGE = ("Low", "High", "Step")
 _STEPS: Final = 4
 """Steps from Low to High where Step is blank."""
 
-_MOST_VALUES: Final = 1_000
+_MOST_VALUES: Final = 100_000
 _SLACK: Final = 1e-9
 """The part of a step by which High may be missed: .1 ten times is a little less than 1."""
 
@@ -58,11 +58,13 @@ def _decision(row: Row, computed: Computed, claims: Claims, findings: Findings) 
     units = findings.attempt(optional_text, row, "Units") or ""
     if len(findings.problems) > before or identity is None or values is None:
         return None
-    return Decision(*identity, values, row.where, units)
+    listed = row.filled("Values")
+    between = None if listed or row.filled("Step") else (values[0], values[-1])
+    return Decision(*identity, values, row.where, units, between, listed)
 
 
 def _values(row: Row) -> tuple[float, ...]:
-    """Return the values that a row says.
+    """Return the values that a row says; a range without a step is divided into a few.
 
     Raises:
         DefinitionError: it says none, or in two ways.

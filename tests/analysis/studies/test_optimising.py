@@ -1,0 +1,312 @@
+"""The best decisions against known optima: a newsvendor, a portfolio, a knapsack; and what is said of them."""
+
+from __future__ import annotations
+
+import math
+import signal
+import sys
+from itertools import product
+
+import numpy as np
+import pytest
+from workbook_files import workbook_of
+
+import xlmc
+from xlmc.analysis.studies.optimising.candidates import Axis
+from xlmc.analysis.studies.optimising.measures import Reader, apart
+from xlmc.errors import DefinitionError, SimulationError
+from xlmc.montecarlo.loop.candidates import CandidateTrials
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "benchmarks"))
+
+HEADS = ["Name", "Cell", "Low", "High", "Step", "Values"]
+ORDER = ["Order", "=Inputs!B6", 0, 100, 1, None]
+PRICE = ["Price", "=Inputs!B7", None, None, None, "5; 6"]
+
+
+@pytest.fixture
+def book(tmp_path):
+    """A newsvendor: demand uniform from 0 to 100, a cost of 3 and a price of 5; its colour is what sells."""
+
+    def make(*rows, demand=(0, 100), filters=()):
+        rows = rows or (ORDER,)
+        sheets = {
+            "Inputs": [
+                ["Name", "Value", "Low", "High"],
+                ["Demand", 50, *demand],
+                [],
+                [],
+                ["What", "Value"],
+                ["Order", 50],
+                ["Price", 5],
+            ],
+            "Model": [
+                ["Name", "Value", "Threshold", "Units"],
+                ["Profit", "=Inputs!B7*MIN(Inputs!B6,Inputs!B2)-3*Inputs!B6", 0, "$"],
+                ["Sold out", "=Inputs!B2>=Inputs!B6", None, None],
+                ["Verdict", '=IF(B2>0,"good","bad")', None, None],
+            ],
+            "Decisions": [HEADS, *rows],
+            "Filters": [["Name", "Cell", "At least"], *filters],
+        }
+        tables = {
+            "xlmc_assumptions": "Inputs!A1:D2",
+            "xlmc_forecasts": "Model!A1:D4",
+            "xlmc_decisions": f"Decisions!A1:F{1 + len(rows)}",
+            **({"xlmc_filters": f"Filters!A1:C{1 + len(filters)}"} if filters else {}),
+        }
+        path = tmp_path / "newsvendor.xlsx"
+        workbook_of(sheets, tables).save(path)
+        return path
+
+    return make
+
+
+def test_what_is_told_of_the_best_is_a_run_of_the_workbook_with_its_values(book):
+    model = xlmc.load(book())
+    found = model.optimise(maximise="mean of Profit", trials=2_000, seed=7)
+    again = xlmc.load(book()).simulate(2_000, seed=7, keep_inputs=None).inputs["Demand"]
+    order = found.values["Order"]
+    profit = 5 * np.minimum(order, again) - 3 * order
+    assert np.allclose(found.run.forecasts["Profit"], profit, rtol=1e-12)
+    assert found.found.value == pytest.approx(profit.mean())
+    assert found.run.model.workbook.content(found.decisions[0].cell).value == order
+    assert found.search_seed != found.run.settings.seed
+
+
+def test_requirements_hold_and_more_is_not_asked_than_that(book):
+    """P5 of demand is 5, so that P5 of profit is 25 − 3·order: at least −70 allows 31 whole pieces."""
+    found = xlmc.load(book()).optimise(
+        maximise="mean of Profit", subject_to=["P5 of Profit >= -70", "2*Order <= 90"], trials=40_000
+    )
+    assert found.values["Order"] in (31, 30)
+    asked, exact = found.held
+    assert asked.chance > 0.95
+    assert abs(asked.found.value - (25 - 3 * found.best[0])) < 4 * asked.found.error
+    assert exact.exact
+    assert exact.found.value == 2 * found.best[0]
+    assert found.meets
+
+
+def test_a_requirement_that_none_meets_is_told(book):
+    found = xlmc.load(book()).optimise(maximise="mean of Profit", subject_to=["P5 of Profit >= 100"], trials=500)
+    assert not found.meets
+    assert found.held[0].chance < 0.01
+    with pytest.raises(SimulationError, match="No combination of the decisions meets"):
+        xlmc.load(book()).optimise(maximise="mean of Profit", subject_to=["Order >= 101"], trials=500)
+
+
+@pytest.mark.parametrize("rows", [(ORDER, PRICE), (["Order", "=Inputs!B6", 0, 100, None, None], PRICE)])
+def test_jobs_and_repetition_change_no_bit(book, rows):
+    model = xlmc.load(book(*rows))
+    first, other = (
+        model.optimise(maximise="median of Profit", trials=2_000, seed=3, jobs=jobs, runs=30) for jobs in (1, 2)
+    )
+    assert first.best == other.best
+    assert first.rivals == other.rivals
+    assert (first.confidence, first.tried, first.trials) == (other.confidence, other.tried, other.trials)
+    assert np.array_equal(first.run.forecasts["Profit"], other.run.forecasts["Profit"])
+
+
+def test_candidates_that_give_the_same_are_not_told_apart(book):
+    """Demand is 200 at least, so that every order of the two is sold: the price decides alone."""
+    rows = (["Order", "=Inputs!B6", None, None, None, "10; 10.001"], PRICE)
+    found = xlmc.load(book(*rows, demand=(200, 300))).optimise(maximise="mean of Profit", trials=500, indifference=0.01)
+    assert found.values["Price"] == 6
+    near = [each for each in found.rivals if each.candidate[1] == 6]
+    assert [each.candidate[0] for each in near] == [10.001 if found.best[0] == 10 else 10]
+    assert found.confidence > 0.99
+
+
+def test_the_smallest_is_found_too(book):
+    found = xlmc.load(book()).optimise(
+        minimise="SD of Profit", subject_to=["mean of Profit >= 30"], trials=40_000, seed=2
+    )
+    least = min(order for order in range(101) if 5 * (order - order**2 / 200) - 3 * order >= 30)  # 20
+    assert found.values["Order"] in (least, least + 1)
+
+
+def test_a_decision_that_a_row_of_a_table_reads_is_typed_in(book):
+    """No formula sees it, so that inputs of one compiled model would not do."""
+    path = book(["Greatest demand", "=Inputs!D2", None, None, None, "60; 100; 140"])
+    model = xlmc.load(path)
+    decisions = model._compiled.definitions.decisions
+    assert CandidateTrials(model._compiled, decisions, "numpy", 1, [(0, None)]).by_typing
+    found = model.optimise(maximise="mean of Profit", trials=1_000)
+    assert found.values == {"Greatest demand": 140}
+
+
+def test_candidates_as_inputs_give_what_typing_them_gives(book):
+    model = xlmc.load(book(ORDER, PRICE, filters=(["Some profit", "=Model!B2", -40],)))
+    compiled = model._compiled
+    trials = CandidateTrials(compiled, compiled.definitions.decisions, "numpy", 5, [(0, None), (2, "good")])
+    assert not trials.by_typing
+    (held,) = trials.forecasts([(30.0, 6.0)], 0, 4_000)
+    trials.by_typing = True
+    (typed,) = trials.forecasts([(30.0, 6.0)], 0, 4_000)
+    assert np.array_equal(held, typed, equal_nan=True)
+    assert 0 < np.isnan(held[0]).mean() < 0.5
+    assert set(np.unique(held[1][~np.isnan(held[1])])) == {0.0, 1.0}
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("mean of Profit", lambda x: x.mean()),
+        ("  the  median of profit ", lambda x: np.median(x)),
+        ("SD of Profit", lambda x: x.std(ddof=1)),
+        ("P5 of Profit", lambda x: np.percentile(x, 5)),
+        ("22.5th percentile of Profit", lambda x: np.percentile(x, 22.5)),
+        ("probability of Profit above 10", lambda x: (x > 10).mean()),
+        ("probability that Profit <= -1,0.5", lambda x: (x <= -10.5).mean()),
+        ("certainty of Profit between -10 and 20", lambda x: ((x >= -10) & (x <= 20)).mean()),
+        ("probability of Profit", lambda x: (x > 0).mean()),  # its threshold
+        ("probability of Profit at least 10%", lambda x: (x >= 0.1).mean()),
+        ("chance of 'Sold out'", lambda x: (x <= -50).mean() * np.nan),
+        ("probability of Verdict is good", lambda x: (x > 0).mean()),
+        ("mean of Profit - 2*SD of Profit + 3*Order - 1", lambda x: x.mean() - 2 * x.std(ddof=1) + 3 * 70 - 1),
+        ("-P10 of Profit", lambda x: -np.percentile(x, 10)),
+    ],
+)
+def test_goals_are_read_and_measured(book, text, value):
+    model = xlmc.load(book())._compiled
+    reader = Reader(model, model.definitions.decisions)
+    goal = reader.goal(text, maximise=True)
+    trials = CandidateTrials(model, model.definitions.decisions, "numpy", 1, [(0, None), *reader.columns])
+    profit, *rest = trials.forecasts([(70.0,)], 0, 5_000)[0]
+    measured = goal.measure.of(np.array(rest), (70.0,))
+    expected = value(profit)
+    if math.isnan(expected):
+        expected = (profit == 5 * 70 - 3 * 70).mean()
+    assert measured.value == pytest.approx(expected)
+    assert 0.0 < measured.error < 20.0
+
+
+def test_errors_are_what_other_seeds_show(book):
+    model = xlmc.load(book(ORDER))._compiled
+    decisions = model.definitions.decisions
+    texts = ("mean of Profit", "SD of Profit", "P65 of Profit", "probability of Profit above 20")
+    found = {text: [] for text in texts}
+    for seed in range(60):
+        reader = Reader(model, decisions)
+        goals = [reader.goal(text, maximise=True) for text in texts]
+        trials = CandidateTrials(model, decisions, "numpy", seed, reader.columns)
+        first, second = trials.forecasts([(60.0,), (70.0,)], 0, 2_000)
+        for goal, text in zip(goals, texts, strict=True):
+            found[text].append(apart(goal.measure.of(first, (60.0,)), goal.measure.of(second, (70.0,))))
+    for text, pairs in found.items():
+        differences, errors = np.array(pairs).T
+        assert 0.7 < differences.std(ddof=1) / errors.mean() < 1.4, text
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("mean of Porfit", "Did you mean Profit"),
+        ("mean of Order", "'order' is a decision"),
+        ("Profit", "a statistic of it is asked for"),
+        ("mean of Verdict", "are texts"),
+        ("probability of Verdict", "are texts"),
+        ("P0 of Profit", "0 is no percentile"),
+        ("mean of Profit >= 3", "this is not understood"),
+        ("7", "is a number"),
+        ("probability of Profit between 1", "a range has two ends"),
+        ("probability of 'Sold out' is yes", "are no texts"),
+    ],
+)
+def test_goals_that_are_none_are_refused_with_the_cure(book, text, message):
+    model = xlmc.load(book())
+    with pytest.raises(SimulationError, match=message):
+        model.optimise(maximise=text, trials=100)
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ("mean of Profit", "a requirement is a comparison"),
+        ("mean of Profit = 3", "a requirement is a comparison"),
+        ("probability of Profit above 0 >= 90", "Write 90%"),
+        ("1 >= 0", "asks for nothing"),
+    ],
+)
+def test_requirements_that_are_none_are_refused(book, text, message):
+    model = xlmc.load(book())
+    with pytest.raises(SimulationError, match=message):
+        model.optimise(maximise="mean of Profit", subject_to=[text], trials=100)
+
+
+def test_what_cannot_be_asked_is_refused(book):
+    model = xlmc.load(book())
+    with pytest.raises(SimulationError, match="largest, or smallest"):
+        model.optimise(trials=100)
+    with pytest.raises(SimulationError, match="No decision has the name 'Size'"):
+        model.optimise(maximise="mean of Profit", decisions=["Size"])
+    with pytest.raises(SimulationError, match="A search of 0 runs"):
+        model.optimise(maximise="mean of Profit", runs=0)
+    function = xlmc.model(lambda x: {"y": x}, {"x": xlmc.Uniform(0, 1)}, ["y"])
+    with pytest.raises(DefinitionError, match="defines no decision"):
+        function.optimise(maximise="mean of y")
+
+
+def test_few_trials_end_the_search_with_the_best_so_far(book):
+    found = xlmc.load(book(["Order", "=Inputs!B6", 0, 100, None, None])).optimise(
+        maximise="mean of Profit", trials=20_000, runs=1
+    )
+    assert found.ended == "its trials were spent"
+    assert abs(found.values["Order"] - 40) < 15
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no such signal")
+def test_ctrl_c_ends_the_search_with_the_best_so_far(book):
+    """Whoever is told of the second step presses it."""
+    steps = []
+
+    def press(what):
+        steps.append(what)
+        if what.startswith("searching step by step"):
+            signal.raise_signal(signal.SIGINT)
+
+    model = xlmc.load(book(["Order", "=Inputs!B6", 0, 100, None, None]))
+    found = model.optimise(maximise="mean of Profit", trials=4_000, tell=press)
+    assert found.ended == "it was interrupted"
+    assert len([each for each in steps if each.startswith("searching step by step")]) == 1
+    assert abs(found.values["Order"] - 40) < 15
+
+
+@pytest.mark.parametrize(
+    ("row", "count", "second", "fine"),
+    [
+        (["Order", "=Inputs!B6", 0, 40, None, None], 4_001, 0.01, True),
+        (["Order", "=Inputs!B6", 0, 0.3, None, None], 3_001, 0.0001, True),
+        (["Order", "=Inputs!B6", 1, 100, 1, None], 100, 2.0, False),
+        (["Order", "=Inputs!B6", None, None, None, "7; 3"], 2, 3.0, False),
+    ],
+)
+def test_values_of_decisions(book, row, count, second, fine):
+    (decision,) = xlmc.load(book(row)).optimise(maximise="mean of Profit", trials=200, runs=2).decisions
+    axis = Axis.of(decision)
+    assert (axis.count, axis.fine) == (count, fine)
+    assert axis.value(1) == second
+    assert axis.value(axis.count - 1) == decision.values[-1]
+    assert all(axis.number(axis.value(each)) == each for each in (0, 1, count // 2, count - 1))
+    assert axis.number(1e9) is None
+
+
+def test_knapsacks_of_many_items_are_searched(tmp_path):
+    """Sixteen of yes and no are too many to try all."""
+    worth = [4, 9, 3, 7, 8, 2, 6, 5, 9, 1, 4, 7, 3, 8, 6, 2]
+    weight = [3, 5, 2, 4, 6, 1, 4, 2, 7, 1, 3, 3, 2, 5, 3, 2]
+    best = max(np.dot(t, worth) for t in product((0, 1), repeat=16) if np.dot(t, weight) <= 20)
+    sheets = {
+        "M": [[0] * 16, worth, [1], ["=SUMPRODUCT(A1:P1,A2:P2)*A3"]],
+        "A": [["Name", "Cell", "Low", "High"], ["scale", "=M!A3", 0.5, 1.5]],
+        "F": [["Name", "Cell"], ["worth", "=M!A4"]],
+        "D": [["Name", "Cell", "Values"], *([f"x{n}", f"=M!{chr(65 + n)}1", "0; 1"] for n in range(16))],
+    }
+    tables = {"xlmc_assumptions": "A!A1:D2", "xlmc_forecasts": "F!A1:B2", "xlmc_decisions": "D!A1:C17"}
+    path = tmp_path / "knapsack.xlsx"
+    workbook_of(sheets, tables).save(path)
+    carried = " + ".join(f"{w}*x{n}" for n, w in enumerate(weight)) + " <= 20"
+    found = xlmc.load(path).optimise(maximise="mean of worth", subject_to=[carried], trials=2_000)
+    assert np.dot(found.best, weight) <= 20
+    assert np.dot(found.best, worth) >= best - 1

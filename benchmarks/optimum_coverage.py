@@ -161,6 +161,7 @@ PROBLEMS = {
         (f"SD of Gain <= {_LIMIT}", "w0 + w1 <= 1"),
         lambda at: at["w0"] * _MEANS[0] + at["w1"] * _MEANS[1] + (1.0 - at["w0"] - at["w1"]) * _MEANS[2],
         _best_portfolio(),
+        200_000,
     ),
     "knapsack": Problem(
         tuple((f"v{number}", "Normal", worth, 0.3 * worth) for number, worth in enumerate(_WORTHS)),
@@ -181,7 +182,7 @@ def coverage(model: xlmc.Model, problem: Problem, runs: int) -> tuple[int, int]:
     """
     stated = held = 0
     for seed in range(runs):
-        found = model.optimise(maximise=problem.goal, trials=500, seed=2 * seed + 10_000, indifference=0.25, runs=400)
+        found = model.optimise(maximise=problem.goal, trials=2_000, seed=2 * seed + 10_000, indifference=0.2, runs=60)
         if found.confidence >= 0.95:
             stated += 1
             held += problem.optimum - problem.true(found.values) <= found.indifference

@@ -70,7 +70,7 @@ def test_every_kind_of_file_and_the_run_repeats(xlmc, book, tmp_path):
 def test_a_requirement_that_nothing_meets_ends_with_code_1(xlmc, book):
     outcome = xlmc("optimise", book, *GIVEN, "--subject-to", "P5 of Profit >= 100")
     assert outcome.code == 1
-    assert "No candidate that was tried meets what is required" in outcome.err
+    assert "No candidate that was found meets what is required" in outcome.err
 
 
 def test_what_is_not_understood_is_refused_with_the_cure(xlmc, book):

@@ -120,7 +120,7 @@ def _again(book: Path, decision: tuple[str, ...], indifference: float | None, ru
 def _doubts(found: Optimised) -> list[str]:
     """Return why the answer must not be used."""
     missed = [each.requirement.text for each in found.held if each.chance <= 0.5]
-    return [f"No candidate that was tried meets what is required; with the nearest, {text} fails" for text in missed]
+    return [f"No candidate that was found meets what is required: {text} fails" for text in missed]
 
 
 def _report(found: Optimised, again: str) -> StudyReport:

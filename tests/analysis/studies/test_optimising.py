@@ -17,8 +17,6 @@ from xlmc.analysis.studies.optimising.measures import Reader, apart
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.montecarlo.loop.candidates import CandidateTrials
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "benchmarks"))
-
 HEADS = ["Name", "Cell", "Low", "High", "Step", "Values"]
 ORDER = ["Order", "=Inputs!B6", 0, 100, 1, None]
 PRICE = ["Price", "=Inputs!B7", None, None, None, "5; 6"]

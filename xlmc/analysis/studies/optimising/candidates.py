@@ -22,7 +22,7 @@ Floats = NDArray[np.float64]
 SURE: Final = 1.6448536269514722
 """Errors by which a requirement must hold, so that it does with 95 % confidence."""
 
-MARGIN: Final = 2.5
+MARGIN: Final = 2.0
 """Errors by which it must hold in the search, so that other trials are likely to say so, too."""
 
 _FINEST: Final = 1e-4

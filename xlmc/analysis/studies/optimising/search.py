@@ -67,18 +67,20 @@ def search(tried: Tried, space: Space, first: Values | None, trials: int, seed: 
     _evolve(tried, space, first, least, seed)
     if not tried.columns:
         return "a search that found none"
+    edged = any(not each.slack.exact for each in tried.requirements)
     for divisor, share in ((32, _FIRST_STEP), (8, _FIRST_STEP / 8), (2, _FIRST_STEP / 32)):
         n = max(least, 1 << round(math.log2(max(trials // divisor, 2))))
         tell(f"searching step by step, {n:,} trials each")
         best = max((tried.standing(each) for each in _leading(tried, n)), key=lambda found: found.rank)
         if tried.requirements:
             best = _slide(tried, space, best, n, share, _SLIDING * len(space.axes))
-        _step_by_step(tried, space, best, n, share, seed)
-    if any(not each.slack.exact for each in tried.requirements):  # more trials need less of a margin
+        if divisor > 2 or not (edged and all(axis.fine for axis in space.axes)):
+            _step_by_step(tried, space, best, n, share, seed)
+    if edged:  # more trials need less of a margin
         n = 2 * trials
         tell(f"nearer to what is required, {n:,} trials each")
         best = max((tried.standing(each) for each in _leading(tried, n, 2)), key=lambda found: found.rank)
-        _slide(tried, space, best, n, _FIRST_STEP / 8, 4 + 3 * len(space.axes))
+        _slide(tried, space, best, n, _FIRST_STEP / 4, 6 + 4 * len(space.axes))
     return "differential evolution, then step by step"
 
 

@@ -38,7 +38,7 @@ Floats = NDArray[np.float64]
 
 _SETTINGS: Final = frozenset(
     {
-        *("trials", "seed", "sampling", "engine", "evidence", "rare", "time_limit", "forecasts"),
+        *("trials", "seed", "sampling", "engine", "evidence", "detailed", "rare", "time_limit", "forecasts"),
         *("until_accepted", "precision", "precision_of", "confidence", "adaptive"),
     }
 )
@@ -283,6 +283,7 @@ class Model:
                 decides by the run's first trials.
             scenarios: run the scenarios of the table `xlmc_scenarios`, too, when `scenarios` of the run is asked for,
                 or the first of its files is written.
+            detailed: how many forecasts, from the first on, sensitivity, charts and page tell of; by default 20.
             jobs: threads or processes.
             scheduler: `threads`; `processes`; `local`, a Dask cluster of this machine; or the address of a Dask
                 scheduler. By default processes for a long run with several jobs, else threads.

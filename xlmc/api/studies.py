@@ -24,25 +24,31 @@ if TYPE_CHECKING:
 __all__ = ["compare", "decide", "fit", "methods", "optimise", "screen", "sensitivities", "stability", "uncertainty"]
 
 
-def sensitivities(run: Simulation, *, assumptions: Collection[str] = ()) -> Sensitivities:
+def sensitivities(
+    run: Simulation, *, assumptions: Collection[str] = (), forecasts: Collection[str] = ()
+) -> Sensitivities:
     """Compute what the answers of a finished run depend on. Nothing random is in it but the run's own draws.
 
     Args:
         run: with one forecast or more.
         assumptions: names of those that are measured for every forecast. Where there are more than 20, the others are
             measured for a forecast only if they are among the 20 that matter most for it.
+        forecasts: names of those to tell of; by default the first 20, or as many as `simulate(detailed=…)` says.
 
     Raises:
-        SimulationError: no assumption that is drawn has one of these names, or evidence weights the trials.
+        SimulationError: no assumption that is drawn or no forecast has one of these names, or evidence weights the
+            trials.
     """
     from xlmc.analysis.studies.sensitivity import sensitivities
+    from xlmc.montecarlo.model.keywords import forecast_named
 
     if run.weights is not None:
         raise SimulationError(
             "Evidence weights the trials of this run, and sensitivities count them alike",
             hint='Run it with evidence="rejection"',
         )
-    return sensitivities(run._run, assumptions=assumptions)
+    names = [forecast_named(run._run.model, name) for name in forecasts]
+    return sensitivities(run._run, names or None, assumptions=assumptions)
 
 
 def compare(

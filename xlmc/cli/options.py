@@ -17,6 +17,7 @@ __all__ = [
     "OneOf",
     "WholeNumber",
     "chance_option",
+    "detailed_option",
     "engine_option",
     "feed_option",
     "functions_option",
@@ -160,6 +161,8 @@ quiet_option = click.option("--quiet", is_flag=True, help="Print no notes of wha
 """The option of studies."""
 
 engine_option = _setting_option(SETTINGS["engine"])
+
+detailed_option = _setting_option(SETTINGS["detailed"])
 
 tolerance_option = click.option(
     "--tolerance",

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath, functions_option
+from xlmc.cli.options import FilePath, detailed_option, functions_option
 from xlmc.cli.output_options import Outputs, ReportContents, output_options, results_beside
 from xlmc.cli.terminal import say
 from xlmc.cli.writing import NOT_WRITTEN
@@ -26,6 +27,7 @@ NOT_TO_BE_USED = 1
 @click.argument("run", metavar="RUN|RESULTS", type=FilePath())
 @click.argument("second", metavar="[RUN]", required=False, type=FilePath())
 @output_options("RUN-results.xlsx", without=["save_run"])
+@detailed_option
 @click.option("--quiet", is_flag=True, help="Print no notes.")
 @functions_option
 def report(
@@ -35,6 +37,7 @@ def report(
     also: tuple[Path, ...],
     overwrite: bool,
     contents: ReportContents,
+    detailed: int | None,
     quiet: bool,
     functions: OwnFunctions | None,
 ) -> None:
@@ -72,6 +75,8 @@ def report(
         found = open_run(run, functions=functions)
         if seal is None or not seal.whole:
             say(f"warning: {run}: this saved run was changed since xlmc wrote it (its seal is broken).", err=True)
+    if detailed is not None:
+        found = replace(found, settings=replace(found.settings, detailed=detailed))
     if not quiet:
         notices(found.model.notices)
     default = None if asked.files else results_beside(run, copy_ending(found.model.path))

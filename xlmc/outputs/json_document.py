@@ -132,7 +132,7 @@ def document(simulation: RunResult, *, command: str | None = None) -> Json:
         "assumptions": [_assumption(simulation, each) for each in simulation.model.assumptions],
         "statements": [_as_json(each) for each in statements(simulation)],
         "pairs": [] if simulation.weighting is not None else [_pair(each) for each in pairs_of(simulation)],
-        "sensitivity": None if simulation.weighting is not None else _as_json(sensitivities(simulation)),
+        "sensitivity": None if simulation.weighting is not None else _sensitivity(simulation),
         "correlations": [_correlation(met) for met in correlations_met(simulation)],
         "errors": [
             {"in": met.kind, "name": met.name, "cell": str(met.cell), "error": met.error, "trials": met.trials}
@@ -393,6 +393,14 @@ def _pair(pair: Pair) -> Json:
     return {"first": pair.first.name, "second": pair.second.name} | {
         name: _as_json(getattr(pair, name)) for name in others
     }
+
+
+def _sensitivity(simulation: RunResult) -> Json:
+    """Return what the detailed forecasts depend on; how many others there are only where there are some."""
+    found: Json = _as_json(sensitivities(simulation))
+    if not found["omitted_forecasts"]:
+        del found["omitted_forecasts"]
+    return found
 
 
 def _as_json(value: Any) -> Any:

@@ -22,6 +22,7 @@ from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
+from xlmc.montecarlo.model.keywords import forecast_named
 from xlmc.montecarlo.statistics import rank_correlation
 from xlmc.outputs.histogram import Figure as Drawn
 from xlmc.outputs.histogram import figures_of, short_name
@@ -108,7 +109,7 @@ def notebook_figure(width: float, height: float) -> Figure:
 
 def _overview(simulation: RunResult, name: str | None) -> Figure:
     """One row for each forecast that has a number in an accepted trial: histogram and cumulative share."""
-    drawn = figures_of(simulation, None if name is None else [_known(simulation, name)])
+    drawn = figures_of(simulation, None if name is None else [forecast_named(simulation.model, name)])
     if not drawn:
         raise _nothing()
     figure = notebook_figure(_WIDTH, _HEAD + _HEIGHT * len(drawn))
@@ -127,21 +128,9 @@ def _nothing() -> SimulationError:
     return SimulationError("there is nothing to draw: no accepted trial has a number", hint="See the warnings")
 
 
-def _known(simulation: RunResult, name: str) -> str:
-    """Return the name of a forecast as defined.
-
-    Raises:
-        SimulationError: there is none.
-    """
-    names = {name_key(each): each for each in simulation.forecasts}
-    if name_key(name) not in names:
-        raise SimulationError(f"there is no forecast {name!r}", hint=did_you_mean(name, names.values()))
-    return names[name_key(name)]
-
-
 def _one(simulation: RunResult, name: str | None) -> Drawn:
     """Return the forecast of a name, or the first that can be drawn."""
-    found = figures_of(simulation, None if name is None else [_known(simulation, name)])
+    found = figures_of(simulation, None if name is None else [forecast_named(simulation.model, name)])
     if not found:
         raise _nothing()
     return found[0]
@@ -159,7 +148,7 @@ def _number(simulation: RunResult, name: str | None, kind: str, *, shares: bool 
     Raises:
         SimulationError: the forecast has another kind of answers, or all have.
     """
-    found = figures_of(simulation, None if name is None else [_known(simulation, name)])
+    found = figures_of(simulation, None if name is None else [forecast_named(simulation.model, name)])
     if not found:
         raise _nothing()
     fit = [each for each in found if not each.answer.categories and (shares or each.answer.yes is None)]

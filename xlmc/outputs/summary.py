@@ -42,6 +42,7 @@ __all__ = [
     "end_texts",
     "error_sentence",
     "estimate_text",
+    "first_forecasts",
     "percent",
     "question",
     "range_heading",
@@ -401,3 +402,16 @@ def rejection_rows(simulation: RunResult) -> list[tuple[str, str, str, str]]:
     """Return a row for each filter: its name, what it keeps, how many trials it rejected, and how many it alone did."""
     counts = zip(simulation.model.filters, simulation.tally.rejected, simulation.tally.only, strict=True)
     return [(f.name, limits_text(f), f"{rejected:,}", f"{only:,}") for f, rejected, only in counts]
+
+
+def first_forecasts(told: str, shown: int, left: int) -> str:
+    """Return the sentence that says of how many forecasts something is told, and how to ask for more.
+
+    Args:
+        told: what is told, as the sentence begins: `Charts are drawn of`.
+        shown: of how many.
+        left: how many others there are.
+    """
+    total = shown + left
+    more = f"for all, type --detailed {total}, or Detailed forecasts in xlmc_settings"
+    return f"{told} the first {shown:,} of {total:,} forecasts; {more}."

@@ -102,3 +102,25 @@ RICH = '<futureMetadata name="XLRICHVALUE"><bk/></futureMetadata>'
 )
 def test_marks(types, future, cells, marks):
     assert dynamic_array_marks(metadata(types, future, cells), "xl/metadata.xml") == marks
+
+
+def test_sheets_that_hold_texts_are_found_without_parsing(book):
+    row = '<sheetData><row r="1"><c r="A1" s="2" t="s"><v>{}</v></c><c r="B1" t="s"><v>{}</v></c></row></sheetData>'
+    sheets = {
+        "Both": row.format(2, 0),
+        "One": row.format(2, 1),
+        "Numbers": "<sheetData><row><c><v>0</v></c><c><v>2</v></c></row></sheetData>",
+        "Inline": "<sheetData><row><c t='inlineStr'><is><t>key</t></is></c><c t='str'><v>other key</v></c></row>",
+        "Broken": BROKEN,
+    }
+    found = book(sheets, strings=["<t>other key</t>", "<t>a</t>", "<t>key</t>"]).sheets
+    assert found.holding(["key", "other key"]) == ["Both", "Inline"]
+
+
+def test_other_parts_of_the_same_structure(book):
+    sheets = book({"One": NUMBER}).sheets
+    assert sheets["One"].cells[1, 1].value == 5.0
+    part = sheets.part("One")
+    other = sheets.with_parts({**sheets._parts, part: sheets._parts[part].replace(b"<v>5<", b"<v>6<")})
+    assert other["One"].cells[1, 1].value == 6.0
+    assert sheets["One"].cells[1, 1].value == 5.0

@@ -5,6 +5,7 @@ from __future__ import annotations
 import openpyxl
 import pytest
 from simulated import simulated
+from workbook_files import workbook_of
 
 from xlmc.errors import DefinitionError
 from xlmc.montecarlo.model.loading import filter_faults, load
@@ -110,3 +111,14 @@ def test_every_fault_is_listed_however_many_there_are(small_book, tmp_path):
     lines = str(caught.value).splitlines()
     assert {line.partition(":")[0] for line in lines} >= {*blank, *wrong}
     assert all(line.endswith(".") and len(line) < 1200 for line in lines)
+
+
+def test_a_sheet_that_nothing_needs_is_not_parsed(tmp_path):
+    sheets = {
+        "Inputs": [["Name", "Value", "Low", "High"], ["a", 0.5, 0, 1]],
+        "Answers": [["Name", "Value"], ["b", "=Inputs!B2*2"]],
+        "Data": [[number] for number in range(50)],
+    }
+    path = tmp_path / "book.xlsx"
+    workbook_of(sheets, {"xlmc_assumptions": "Inputs!A1:D2", "xlmc_forecasts": "Answers!A1:B2"}).save(path)
+    assert sorted(load(path).workbook.sheets._parsed) == ["Answers", "Inputs"]

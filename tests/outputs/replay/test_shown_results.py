@@ -110,6 +110,45 @@ def test_the_smallest_edit_of_a_file_that_no_program_has_saved(results, tmp_path
     assert replay(path).shown.differences[0].gives == value
 
 
+HAND = {
+    "a row in a comment": lambda row: b"<!--" + row + b"-->",
+    "a row twice, once otherwise": lambda row: row + re.sub(rb"<v>[^<]*</v></c></row>", b"<v>7</v></c></row>", row),
+    "a row within another element": lambda row: b"<x>" + row + b"</x>",
+    "another style": lambda row: re.sub(rb' s="\d+"><v>[^<]*</v></c></row>', b' s="0"><v>7</v></c></row>', row),
+    "a row that is not there": lambda row: b"",
+}
+
+
+@pytest.mark.parametrize("edit", HAND.values(), ids=HAND)
+def test_rows_of_trials_that_were_changed_by_hand_in_a_way_that_no_program_would(results, tmp_path, edit):
+    parts = read_parts(results.read_bytes())
+    name = read_workbook(results).sheets["Trials"].part
+    row = re.search(rb'<row r="40".*?</row>', parts[name])[0]
+    path = tmp_path / "edited.xlsx"
+    with zipfile.ZipFile(path, "w") as package:
+        for each, content in {**parts, name: parts[name].replace(row, edit(row))}.items():
+            package.writestr(each, content)
+    assert {(each.where.sheet, each.where.row) for each in replay(path).shown.differences} == {("Trials", 40)}
+
+
+def test_an_untouched_sheet_of_trials_is_not_parsed(results, monkeypatch):
+    from xlmc.excel.workbook import lazy_sheets
+
+    parsed = []
+
+    def counted(xml, entry, context):
+        found = parse_sheet(xml, entry, context)
+        parsed.append((entry.name, len(found.cells)))
+        return found
+
+    parse_sheet = lazy_sheets.parse_sheet
+    monkeypatch.setattr(lazy_sheets, "parse_sheet", counted)
+    found = replay(results)
+    assert found.identical
+    assert "Trials" in found.shown.sheets
+    assert max(cells for name, cells in parsed if name == "Trials") < 60
+
+
 def test_sheets_are_known_again_by_another_name_and_one_that_was_deleted_is_named(edited):
     """The values of two certainties beside typed ranges are forged besides."""
 

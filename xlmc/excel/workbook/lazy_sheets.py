@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import ChainMap
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from copy import copy
 from dataclasses import replace
@@ -69,6 +69,14 @@ class LazySheets(Mapping[str, Sheet]):
         found._parsed = {**self._parsed, **changed}
         return found
 
+    def with_parts(self, parts: Mapping[str, bytes]) -> LazySheets:
+        """Return the worksheets as other parts of the same structure hold them, none of them parsed yet."""
+        return LazySheets(self._file, parts, self._structure)
+
+    def part(self, name: str) -> str:
+        """Return the name of the part that holds a worksheet, which is not parsed for that."""
+        return self._entries[name].part
+
     def data_tables(self) -> Iterable[DataTable]:
         """All what-if data tables; parses no sheet that cannot hold one.
 
@@ -86,6 +94,22 @@ class LazySheets(Mapping[str, Sheet]):
             xml = self._parts[entry.part].lower()
             if b"\0" in xml[:4] or any(word in xml for word in words):  # zero bytes: an encoding of its own
                 yield entry.name
+
+    def holding(self, texts: Collection[str]) -> list[str]:
+        """Return the names of the sheets that hold all of these texts, each in a cell or a part of one; parse none.
+
+        A sheet that was written in an unusual way may be left out.
+        """
+        with naming_file(self._file):
+            strings = self._context.strings
+        numbers = {text: {at for at, each in enumerate(strings) if each == text} for text in texts}
+        found = []
+        for entry in self._entries.values():
+            xml = self._parts.get(entry.part, b"")
+            shown = set(map(int, _SHARED.findall(xml)))
+            if all(at & shown or text.encode() in xml for text, at in numbers.items()):
+                found.append(entry.name)
+        return found
 
     @cached_property
     def _context(self) -> CellContext:
@@ -110,6 +134,9 @@ class LazySheets(Mapping[str, Sheet]):
         part = self._structure.target(kind)
         return None if part is None or part not in self._parts else reader(self._parts[part], part)
 
+
+_SHARED = re.compile(rb'<(?:\w+:)?c\b[^>]*\bt="s"[^>]*>\s*<(?:\w+:)?v>(\d{1,9})</')
+"""A cell that shows a shared string, by its number."""
 
 _CALCULATED = re.compile(rb"(?:</(?:\w+:)?f>|<(?:\w+:)?f\b[^>]*/>)\s*<(?:\w+:)?v\b[^>]*>(?!\s*(?:0(?:\.0*)?\s*)?</)")
 """A formula with a saved value that is neither 0 nor empty."""

@@ -18,7 +18,7 @@ KEPT_INPUTS: Final = 1 << 20
 """Accepted trials whose draws are kept, unless asked otherwise: more than a sheet has rows."""
 
 
-_WHOLE: Final = frozenset({"trials", "seed", "jobs", "workers", "keep_inputs"})
+_WHOLE: Final = frozenset({"trials", "seed", "detailed", "jobs", "workers", "keep_inputs"})
 """Options that are whole numbers."""
 
 
@@ -37,6 +37,7 @@ class RunArguments(TypedDict, total=False):
     sampling: str | None
     evidence: str | None
     scenarios: bool
+    detailed: int | None
     jobs: int
     scheduler: str | None
     workers: int | None
@@ -64,6 +65,7 @@ class RunOptions:
     engine: str | None = None
     evidence: str | None = None
     scenarios: bool = False
+    detailed: int | None = None
     stopping: Stopping = NO_GOAL
     jobs: int = 1
     scheduler: str | None = None
@@ -146,7 +148,7 @@ class RunOptions:
 
     def _arguments(self, row: Setting, own: Settings) -> list[str]:
         value: Any = None if row.repeat == "never" else row.of(self)
-        stated = value not in (None, "") and (row.repeat == "always" or value != row.of(own))
+        stated = value is not None and (value or not row.blank) and (row.repeat == "always" or value != row.of(own))
         words = row.kind.arguments(row.options[-1], value) if stated else []
         return [*words, *self._goal_arguments()] if row.key == "trials" else words
 

@@ -18,10 +18,13 @@ from xlmc.montecarlo.definitions.setting_kinds import Kind, Names, Seconds, Swit
 from xlmc.montecarlo.definitions.stopping import MOST_TRIALS, NO_GOAL, RARE, Stopping
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 
-__all__ = ["ENDS", "SETTINGS", "USUAL", "Setting", "Settings", "check_settings"]
+__all__ = ["DETAILED", "ENDS", "SETTINGS", "USUAL", "Setting", "Settings", "check_settings"]
 
 ENDS: Final = "stopping."
 """What the field of a setting of the end of the run begins with."""
+
+DETAILED: Final = 20
+"""Forecasts that sensitivity, charts and page tell of, unless asked otherwise: nobody looks at hundreds of charts."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +38,7 @@ class Settings:
             where a run has no such evidence.
         lognorm: whose `RiskLognorm` is meant, `@RISK` (also where it is empty) or `XLRisk`.
         scenarios: whether the workbook's scenarios are run, too, and compared with it.
+        detailed: how many forecasts, from the first on, sensitivity, charts and page tell of; 0 for `DETAILED`.
     """
 
     trials: int = 200_000
@@ -45,6 +49,7 @@ class Settings:
     lognorm: str = ""
     scenarios: bool = False
     evidence: str = ""
+    detailed: int = 0
 
 
 USUAL: Final = Settings()
@@ -169,6 +174,17 @@ SETTINGS: Final[dict[str, Setting]] = {
             repeat="unlike the workbook",
             options=("--scenarios",),
             help="Also run the scenarios of the table xlmc_scenarios, and compare their answers with the book's own.",
+            blank=True,
+            sparse=True,
+        ),
+        Setting(
+            key="detailed",
+            heading="Detailed forecasts",
+            label="Forecasts with charts and sensitivity",
+            kind=Whole(1, None, "Charts and sensitivity of {} forecasts were asked for", "Give 1 or more"),
+            repeat="unlike the workbook",
+            options=("--detailed",),
+            help=f"Forecasts, from the first on, with charts and sensitivity.  [default: the book's, else {DETAILED}]",
             blank=True,
             sparse=True,
         ),

@@ -114,9 +114,10 @@ def read_xlrisk(workbook: Workbook, findings: Findings) -> XLRiskSheet | None:
         workbook: that was read.
         findings: takes mistakes and remarks.
     """
-    sheet = next((each for name, each in workbook.sheets.items() if name.casefold() == _SHEET), None)
-    if sheet is None:
+    own = next((name for name in workbook.sheets if name.casefold() == _SHEET), None)
+    if own is None:
         return None
+    sheet = workbook.sheets[own]
     texts = {at: plain(content.value) for at, content in sheet.cells.items() if isinstance(content.value, str)}
     anchor = _anchor(workbook, sheet, texts)
     if anchor is None and not {"seed", "iterations"} & set(texts.values()):

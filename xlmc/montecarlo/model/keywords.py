@@ -1,4 +1,4 @@
-"""Names of assumptions as keywords of Python: `road_friction` for `Road friction`."""
+"""Names that people type: of forecasts, and of assumptions, also as keywords: `road_friction` for `Road friction`."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
 
-__all__ = ["assumption_named", "keyword"]
+__all__ = ["assumption_named", "forecast_named", "keyword"]
 
 _NO_LETTER: Final = re.compile(r"[\W_]+")
 
@@ -48,3 +48,15 @@ def assumption_named(model: CompiledModel, name: str, *, drawn: bool = False) ->
         message, listed = f"no assumption that is drawn is called {name!r}", ", ".join(map(repr, names))
         raise SimulationError(message, hint=f"They are {listed or 'none'}")
     raise SimulationError(f"there is no assumption {name!r}", hint=did_you_mean(name, names))
+
+
+def forecast_named(model: CompiledModel, name: str) -> str:
+    """Return the name of a forecast as defined, from that name whatever its case.
+
+    Raises:
+        SimulationError: there is none.
+    """
+    names = {name_key(f.name): f.name for f in model.forecasts}
+    if name_key(name) not in names:
+        raise SimulationError(f"there is no forecast {name!r}", hint=did_you_mean(name, names.values()))
+    return names[name_key(name)]

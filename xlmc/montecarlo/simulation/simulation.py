@@ -16,7 +16,7 @@ from xlmc.errors import Notice, SimulationError
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.columns import parts
 from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
-from xlmc.montecarlo.definitions.run_settings import Settings
+from xlmc.montecarlo.definitions.run_settings import DETAILED, Settings
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.diagnostics.agreement import Agreement, agreement
 from xlmc.montecarlo.diagnostics.base_formulas import base_formulas
@@ -198,6 +198,11 @@ class RunResult:
             )
             for f in self.model.forecasts
         }
+
+    @property
+    def detailed(self) -> tuple[str, ...]:
+        """The forecasts that sensitivity, charts and page tell of: the first ones of the workbook."""
+        return tuple(f.name for f in self.model.forecasts[: self.settings.detailed or DETAILED])
 
     @cached_property
     def weighting(self) -> Weighting | None:

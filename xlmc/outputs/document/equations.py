@@ -39,9 +39,9 @@ def equations_of(model: CompiledModel) -> list[Equation]:
     asked = {each.cell for each in model.forecasts} | {each.cell for each in model.filters}
     for cell in model.lowering.read | asked:
         needed.setdefault(cell.sheet, set()).add(cell.row)
-    for name, sheet in model.workbook.sheets.items():
+    for name in model.workbook.sheets:  # others are not parsed for it
         if name in needed:
-            found += _of_sheet(model.workbook, sheet, needed[name])
+            found += _of_sheet(model.workbook, model.workbook.sheets[name], needed[name])
     feeding = model.definitions.feeding
     for file, book in {} if feeding is None else feeding.sources.items():
         for name, sheet in model.workbook.links[f"[{file}]"].sheets.items():

@@ -49,6 +49,7 @@ from xlmc.outputs.summary import (
     end_texts,
     error_sentence,
     estimate_text,
+    first_forecasts,
     percent,
     question,
     range_heading,
@@ -170,14 +171,20 @@ def _scene(material: Material) -> Iterator[Block]:
         )
 
 
+def _many(simulation: RunResult) -> str:
+    """Return how many forecasts sheets and page draw, in words."""
+    told = len(simulation.detailed)
+    return "all of them" if told == len(simulation.model.forecasts) else f"the first {told} (--detailed)"
+
+
 def _forecasts(material: Material) -> Iterator[Block]:
     simulation = material.simulation
     width = _LARGE if len(material.forecasts) <= _FEW else _SMALL
-    shown = [figure for figure in figures_of(simulation) if figure.answer.name in material.forecasts]
+    shown = figures_of(simulation, material.forecasts)
     if len(shown) > _MOST_FIGURES:
         yield Paragraph(
             f"Figures of the first {_MOST_FIGURES} of {len(shown)} forecasts. The sheet Charts of the result workbook "
-            "and the page show all of them; --forecasts chooses those of the report."
+            f"and the page show {_many(simulation)}; --forecasts chooses those of the report."
         )
     for figure in shown[:_MOST_FIGURES]:
         row, bins = figure.answer, figure.bins
@@ -374,7 +381,11 @@ def _assumption_row(simulation: RunResult, each: Assumption) -> list[Content]:
 def _sensitivity(material: Material) -> Iterator[Block]:
     if material.simulation.weighting is not None:
         return
-    found, fits = sensitivities(material.simulation), vocabulary_of(material.simulation.model.workbook).fits
+    simulation = material.simulation
+    # Those that a person names are told of, wherever they stand.
+    named = None if len(material.forecasts) == len(simulation.model.forecasts) else material.forecasts
+    within = named is None or set(named) <= set(simulation.detailed)
+    found, fits = sensitivities(simulation, None if within else named), vocabulary_of(simulation.model.workbook).fits
     shown = [each for each in found.forecasts if each.forecast in material.forecasts]
     if not shown:
         return
@@ -384,6 +395,8 @@ def _sensitivity(material: Material) -> Iterator[Block]:
         "more than chance alone would show. The rank correlation says whether the forecast rises (above 0) or falls "
         f"with the assumption. No sensitivity says whether the model {fits}."
     )
+    if named is None and found.omitted_forecasts:
+        yield Paragraph(first_forecasts("Sensitivity is told of", len(shown), found.omitted_forecasts))
     lines: list[tuple[str, ...]] = []
     most = _MOST_BARS if len(shown) <= _FEW else _MOST_OF_MANY
     for each in shown:

@@ -13,7 +13,7 @@ from xlmc.outputs.document.element import EMPTY, Html, element, join, void
 from xlmc.outputs.document.html_writer import estimate_html, picture_html, share_html
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.page.payload import counted_figures, most_values, overlays_of
-from xlmc.outputs.summary import SummaryRow, percent, shares_of
+from xlmc.outputs.summary import SummaryRow, first_forecasts, percent, shares_of
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
@@ -43,9 +43,12 @@ _NOTHING = "No forecast has a number in an accepted trial: nothing to draw."
 def charts(simulation: RunResult, figures: Sequence[Figure]) -> Html:
     """Return the section with a chart for every forecast."""
     counted = counted_figures(figures)
+    told = len(simulation.detailed)
+    beyond = first_forecasts("Charts are drawn of", told, len(simulation.model.forecasts) - told)
     return element(
         "section",
         element("h2", "Forecasts"),
+        *([element("p", beyond, class_="remark")] if told < len(simulation.model.forecasts) else []),
         *(_how_to_read(simulation, counted) if counted else []),
         *([] if figures else [element("p", _NOTHING, class_="alarm")]),
         element("noscript", element("p", "The charts need JavaScript; every number below is here without it.")),

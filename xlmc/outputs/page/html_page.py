@@ -152,7 +152,7 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
         command: what the person typed, for the record.
     """
     scenario_answers(simulation)  # cells may ask about them, and warnings tell of those that cannot
-    figures, name = figures_of(simulation), simulation.model.workbook.name
+    figures, name = figures_of(simulation, simulation.detailed), simulation.model.workbook.name
     found = None if simulation.weighting is not None else sensitivities(simulation)
     parts = {
         "answer": answers(simulation),

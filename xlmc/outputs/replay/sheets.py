@@ -18,6 +18,7 @@ from xlmc.excel.formula import Resolver, build_graph
 from xlmc.excel.formula.precedents import mentioned
 from xlmc.excel.workbook.inject import marked_names
 from xlmc.excel.workbook.injection.content_types import roles
+from xlmc.excel.workbook.lazy_sheets import LazySheets
 from xlmc.excel.workbook.number_formats import NumberFormat, number_formats
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.workbook import CellContent, CellValue
@@ -99,10 +100,17 @@ def compare_sheets(workbook: Workbook, run: RunResult, command: str | None, clos
         closeness: how far numbers may be apart.
     """
     built = _build(run, command, TRIAL_ROWS)
+    quick = _compare_short(workbook, built, closeness)
+    if quick is not None:
+        return quick
     found = _match_sheets(workbook, built)
     rows = _trial_rows(found["Trials"]) if "Trials" in found else TRIAL_ROWS
     if rows != TRIAL_ROWS:
         built = _build(run, command, rows)
+    return _compared(workbook, built, found, closeness)
+
+
+def _compared(workbook: Workbook, built: Workbook, found: Mapping[str, Sheet], closeness: Closeness) -> SheetComparison:
     pairs = [
         _Pair(built, workbook, built.sheets[name], found[name], closeness) for name in built.sheets if name in found
     ]
@@ -112,6 +120,69 @@ def compare_sheets(workbook: Workbook, run: RunResult, command: str | None, clos
         missing=tuple(name for name in built.sheets if name not in found),
         left_out=tuple(sentence for pair in pairs for sentence in pair.left_out()),
     )
+
+
+def _compare_short(workbook: Workbook, built: Workbook, closeness: Closeness) -> SheetComparison | None:
+    """Compare the sheets without the rows that both files write in the same words; None where anything differs.
+
+    Nearly all rows are such, of numbers alone, and parsing hundreds of thousands of cells takes seconds. Where a
+    difference is found, or a range that a person typed, whose certainty all trials tell, all rows are compared.
+    """
+    marked = _marked(workbook, built)
+    if set(marked) != set(built.sheets) or not isinstance(workbook.sheets, LazySheets):
+        return None
+    assert isinstance(built.sheets, LazySheets)
+    parts_built, parts_file = dict(built.parts), dict(workbook.parts)
+    for name, own in marked.items():
+        here, there = built.sheets.part(name), workbook.sheets.part(own)
+        parts_built[here], parts_file[there] = _without_common_rows(built.parts[here], workbook.parts[there])
+    short_built = replace(built, parts=parts_built, sheets=built.sheets.with_parts(parts_built))
+    short_file = replace(workbook, parts=parts_file, sheets=workbook.sheets.with_parts(parts_file))
+    sheets = {name: short_file.sheets[own] for name, own in marked.items()}
+    found = _compared(short_file, short_built, sheets, closeness)
+    return found if found.same and not found.left_out else None
+
+
+_ROW: Final = re.compile(rb"<row [^>]*[^/]>.*?</row>", re.DOTALL)
+_STYLE: Final = re.compile(rb' s="(\d+)"')
+_NOT_NUMBERS_ALONE: Final = re.compile(rb' t="|<f|<!|<\?|<is|<row .*<row ', re.DOTALL)
+
+
+def _without_common_rows(first: bytes, second: bytes) -> tuple[bytes, bytes]:
+    """Take the rows of plain numbers out of two worksheets that both hold, but for the numbers of their styles.
+
+    The first row of each combination of styles stays, so that what these show can be compared. Worksheets that hold
+    anything but rows among their cells stay as they are.
+    """
+    rows = _rows_by_text(first), _rows_by_text(second)
+    if not all(rows):
+        return first, second
+    seen: set[tuple[tuple[bytes, ...], tuple[bytes, ...]]] = set()
+    common = set()
+    for text in rows[0].keys() & rows[1].keys():
+        styles = rows[0][text], rows[1][text]
+        if styles in seen:
+            common.add(text)
+        seen.add(styles)
+    return _without(first, common), _without(second, common)
+
+
+def _rows_by_text(xml: bytes) -> dict[bytes, tuple[bytes, ...]]:
+    """Return the rows of numbers alone, without the numbers of their styles -> these; none of a worksheet that holds
+    anything else there.
+    """
+    before, start, rest = xml.partition(b"<sheetData>")
+    cells, end, after = rest.partition(b"</sheetData>")
+    if not (start and end) or b"<!" in xml or _ROW.sub(b"", cells).strip():
+        return {}
+    if b"<row" in before or b"<row" in after:
+        return {}
+    rows = [row for row in _ROW.findall(cells) if not _NOT_NUMBERS_ALONE.search(row)]
+    return {_STYLE.sub(b"", row): tuple(_STYLE.findall(row)) for row in rows}
+
+
+def _without(xml: bytes, rows: Collection[bytes]) -> bytes:
+    return _ROW.sub(lambda found: b"" if _STYLE.sub(b"", found[0]) in rows else found[0], xml)
 
 
 def _build(run: RunResult, command: str | None, rows: int) -> Workbook:
@@ -294,9 +365,14 @@ def _match_sheets(workbook: Workbook, built: Workbook) -> dict[str, Sheet]:
 
 def _by_mark(workbook: Workbook, built: Workbook) -> dict[str, Sheet]:
     """Return the sheets with a mark; `Results (2)` is Results in a workbook that had a sheet of that name already."""
+    return {name: workbook.sheets[own] for name, own in _marked(workbook, built).items()}
+
+
+def _marked(workbook: Workbook, built: Workbook) -> dict[str, str]:
+    """Return the names in the file of the sheets with a mark, by the names that the run gives them."""
     marked = [name for name in marked_names(workbook.names) if name in workbook.sheets]
     names = {name if name in built.sheets else _NUMBERED.sub("", name): name for name in marked}
-    return {name: workbook.sheets[names[name]] for name in built.sheets if name in names}
+    return {name: names[name] for name in built.sheets if name in names}
 
 
 def _likest(expected: Sheet, workbook: Workbook, taken: Collection[str]) -> Sheet | None:

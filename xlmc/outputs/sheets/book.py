@@ -78,8 +78,8 @@ class Writing:
 
     @cached_property
     def figures(self) -> list[Figure]:
-        """The histogram of each forecast."""
-        return figures_of(self.simulation)
+        """The histograms of the detailed forecasts."""
+        return figures_of(self.simulation, self.simulation.detailed)
 
     @cached_property
     def curves(self) -> Curves:

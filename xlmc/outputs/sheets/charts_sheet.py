@@ -16,7 +16,7 @@ from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.curve_charts import MOST, cumulative_charts, group_by_units, overlay_chart, trend_chart
 from xlmc.outputs.sheets.curves_sheet import Curves
 from xlmc.outputs.sheets.page import ROW
-from xlmc.outputs.summary import percent
+from xlmc.outputs.summary import first_forecasts, percent
 
 if TYPE_CHECKING:
     from xlsxwriter.chart import Chart
@@ -68,8 +68,11 @@ def write_charts(
     """Write the sheet with the charts; `bins` says where their bins stand, `curves` takes the other numbers."""
     name = simulation.model.workbook.name
     page.title("Forecast charts of the accepted trials", f"{name}: {simulation.accepted:,} accepted trials")
+    left_out = len(simulation.model.forecasts) - len(simulation.detailed)
     page.wide(_PRINTED, "remark", len(WIDTHS) - 1)
     page.row = _FIRST
+    if left_out:
+        page.wide(first_forecasts("Charts are drawn of", len(simulation.detailed), left_out), "remark", len(WIDTHS) - 1)
     if not figures:
         page.put(page.row, 0, Shown("No forecast has a number in an accepted trial: nothing to draw.", look="alarm"))
     drawings = [

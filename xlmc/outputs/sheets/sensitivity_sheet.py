@@ -29,6 +29,7 @@ from xlmc.outputs.sheets.sensitivity_charts import (
     spider_chart,
     tornado_chart,
 )
+from xlmc.outputs.summary import first_forecasts
 
 if TYPE_CHECKING:
     from xlsxwriter.workbook import Workbook
@@ -169,6 +170,8 @@ def sensitivity_sentences(found: Sensitivities, source: SourceBook) -> list[str]
             f"For each forecast those {MEASURED} assumptions are measured that matter most in a first look at all; the "
             f"other {omitted:,} have less influence."
         )
+    if found.omitted_forecasts:
+        said.append(first_forecasts("Sensitivity is told of", len(found.forecasts), found.omitted_forecasts))
     if found.medians:
         said.append(f"Held at their medians, because their cells are blank: {', '.join(found.medians)}.")
     return said

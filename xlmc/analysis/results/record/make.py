@@ -9,6 +9,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
+from weakref import WeakKeyDictionary
 
 import numpy as np
 from numpy.typing import NDArray
@@ -193,7 +194,7 @@ def _run(simulation: RunResult, command: str | None) -> Section:
     entries = (
         Entry("repeat", "Command that repeats it", repeat_command(simulation)),
         *given,
-        Entry("fingerprint", "SHA-256 of the accepted trials", fingerprint(simulation)),
+        Entry("fingerprint", "SHA-256 of the accepted trials", _known_fingerprint(simulation)),
         Entry("format", "Format of this record", _FORMAT),
     )
     return Section("run", "This run", entries)
@@ -435,10 +436,22 @@ def fingerprint(simulation: RunResult) -> str:
     return digest.hexdigest()
 
 
+_FINGERPRINTS: Final[WeakKeyDictionary[RunResult, str]] = WeakKeyDictionary()
+"""Each file of a run has a record of its own, and reading gigabytes takes its time."""
+
+
+def _known_fingerprint(simulation: RunResult) -> str:
+    if simulation not in _FINGERPRINTS:
+        _FINGERPRINTS[simulation] = fingerprint(simulation)
+    return _FINGERPRINTS[simulation]
+
+
 def _update(digest: hashlib._Hash, values: NDArray[np.float64]) -> None:
     for part in parts(values):
         checkpoint()
-        digest.update(np.where(np.isnan(part), np.nan, part).astype("<f8", copy=False).data)
+        missing = np.isnan(part)
+        same = np.where(missing, np.nan, part) if missing.any() else part
+        digest.update(same.astype("<f8", copy=False).data)
 
 
 def repeat_command(simulation: RunResult) -> str:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from xlmc.errors import ErrorCode, WorkbookError
+from xlmc.excel.workbook.lazy_sheets import LazySheets
 from xlmc.excel.workbook.workbook import CellContent, Sheet, Workbook
 
 __all__ = ["EDITED", "Entry", "Record", "RecordTable", "Section", "Value", "read_record"]
@@ -127,7 +128,9 @@ def read_record(workbook: Workbook) -> Record:
     Raises:
         WorkbookError: the workbook holds no record, or several.
     """
-    found = [sheet for sheet in map(workbook.sheets.__getitem__, workbook.sheets) if _holds_record(sheet)]
+    sheets = workbook.sheets
+    likely = sheets.holding(_MARKS) if isinstance(sheets, LazySheets) else []  # large ones are not parsed for it
+    found = [sheet for sheet in map(sheets.__getitem__, likely or sheets) if _holds_record(sheet)]
     if not found:
         hint = "Give the workbook that xlmc simulate wrote, such as case-results.xlsx"
         raise WorkbookError("the workbook holds no record of a run", where=workbook.name, hint=hint)

@@ -45,7 +45,8 @@ def sensitivities(
 
     Args:
         simulation: the run.
-        names: of the forecasts that are wanted; None for all. Of fewer, more trials may be examined.
+        names: of the forecasts that are wanted; None for the run's `detailed` ones. Of fewer, more trials may be
+            examined.
         progress: takes the share of the work that is done.
         assumptions: names of those that are measured for every forecast; of more than 20, else only the 20 are that
             matter most for each.
@@ -54,7 +55,8 @@ def sensitivities(
         SimulationError: no assumption that is drawn has one of these names.
     """
     model, known = simulation.model, _FOUND.setdefault(simulation, {})
-    found = [i for i, each in enumerate(model.forecasts) if names is None or each.name in names]
+    names = simulation.detailed if names is None else names
+    found = [i for i, each in enumerate(model.forecasts) if each.name in names]
     wanted = tuple(i for i in found if i not in model.categories)  # texts have no variance to explain
     asked = frozenset(assumption_named(model, name, drawn=True) for name in assumptions)
     if (wanted, asked) not in known:
@@ -105,6 +107,7 @@ def _analyse(
         filter_limits=tuple(_move_limit(forecasts[:_MOST_LIMIT_FORECASTS], tried) for tried in limits.tried),
         omitted_limits=limits.omitted,
         varying_limits=limits.varying,
+        omitted_forecasts=len(model.forecasts) - len(model.categories) - len(wanted),
     )
 
 

@@ -234,7 +234,7 @@ class Sensitivities:
         accepted: trials that the run accepted.
         examined: accepted trials that the influences rest on, the first ones of the run (or of each of its
             replicates); fewer than `accepted` where all would take long.
-        forecasts: one a forecast, in the order of the workbook.
+        forecasts: one a forecast that was asked for, in the order of the workbook.
         omitted: live assumptions that are measured for no forecast.
         medians: assumptions without a base value, which tornado and spider hold at their median.
         sobol_reason: why there are no Sobol indices; empty where there are.
@@ -242,6 +242,7 @@ class Sensitivities:
         filter_limits: one a limit, in the order of the workbook.
         omitted_limits: further ones that were left out, because there are very many.
         varying_limits: filters, by name, with a limit that varies with the assumptions and so cannot be moved.
+        omitted_forecasts: further forecasts that are numbers, and were not asked for.
     """
 
     accepted: int
@@ -254,6 +255,7 @@ class Sensitivities:
     filter_limits: tuple[FilterLimit, ...]
     omitted_limits: int
     varying_limits: tuple[str, ...]
+    omitted_forecasts: int = 0
 
     def __getitem__(self, forecast: str) -> ForecastSensitivity:
         """One forecast, by name whatever its case.

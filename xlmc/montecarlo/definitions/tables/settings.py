@@ -66,8 +66,9 @@ def read_settings(
     ends = _read_stopping(tables, values, findings)
     if ends.has_goal:
         values.setdefault("trials", LIMIT)
+    keys = {plain(row.heading): row.key for row in SETTINGS.values()}
     return (
-        Settings(**{key: value for key, value in values.items() if value is not None}, stopping=ends),
+        Settings(**{keys[name]: value for name, value in values.items() if value is not None}, stopping=ends),
         _DEFAULT_CENTRAL if central is None else central,
         stated,
     )

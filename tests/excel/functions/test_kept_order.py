@@ -13,7 +13,7 @@ from xlmc.errors import ErrorCode
 from xlmc.excel.functions import ordering
 from xlmc.excel.functions.lookup.picked_cells import column_of, turn
 from xlmc.excel.functions.ordering import to_ordered
-from xlmc.excel.functions.values import Value, from_objects
+from xlmc.excel.functions.values import TEXT, Value, from_objects
 
 WRITTEN = ["", "a", "A", "co-op", "coop", "é", "ef", "#", "Zz", "10", "9", "b*", "~", "it's", "its", "İ", "ß", "SS"]
 
@@ -27,7 +27,18 @@ def _column(items):
 
 
 def _ranks(ordered):
-    return [each.order.tolist() for each in ordered], [each.kinds.tolist() for each in ordered], ordered[0].texts
+    """Numbers as they are; texts as places among those of all values, and the text of each place."""
+    of_texts = [np.where(each.kinds == TEXT, each.order, np.nan) for each in ordered]
+    places = sorted({place for orders in of_texts for place in orders.ravel().tolist() if place == place})
+    texts = [
+        {each.text(place) for each, orders in zip(ordered, of_texts, strict=True) if place in orders}
+        for place in places
+    ]
+    orders = [
+        [places.index(o) if k == TEXT else o for o, k in zip(each.order.flat, each.kinds.flat, strict=True)]
+        for each in ordered
+    ]
+    return orders, [each.kinds.tolist() for each in ordered], texts
 
 
 @pytest.mark.parametrize("seed", range(40))
@@ -55,12 +66,14 @@ def test_a_table_is_put_in_order_once(monkeypatch):
     assert calls[100:] == ["none such"]
 
 
-def test_many_new_keys_are_merged():
+def test_many_new_keys_stand_between_the_texts_of_a_table():
     table = _column([f"item {i:03d}" for i in range(0, 200, 2)])
     keys = _value([f"item {i:03d}" for i in range(1, 200, 2)])
     wanted, found = to_ordered(keys, table)
-    assert wanted.order[:, 0].tolist() == list(range(1, 200, 2))
-    assert found.order[0].tolist() == list(range(0, 200, 2))
+    assert wanted.order[:, 0].tolist() == [place + 0.5 for place in range(100)]
+    assert found.order[0].tolist() == list(range(100))
+    assert [wanted.text(place) for place in wanted.order[:, 0]] == keys.texts.tolist()
+    assert to_ordered(_value(["another"]), table)[1] is found
 
 
 def test_columns_and_turned_tables_are_shared_and_let_go():

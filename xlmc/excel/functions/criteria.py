@@ -124,8 +124,8 @@ def _match_equal(wanted: Ordered, found: Ordered, begins: bool, read: _Read | No
     is_number, is_text = wanted.kinds == NUMBER, wanted.kinds == TEXT
     if read is not None and is_number.any() and (found.kinds == TEXT).any():
         result = result | (is_number & equal(_numbers_of_texts(found, read), wanted.order))
-    for index in np.unique(wanted.order[is_text]).astype(np.intp):
-        text = wanted.texts[index]
+    for index in np.unique(wanted.order[is_text]).tolist():
+        text = wanted.text(index)
         if not text or begins or is_pattern(text):
             fitting = found.kinds == BLANK if not text else _match_pattern(found, text, begins)
             result = np.where(is_text & (wanted.order == index), result | fitting if not text else fitting, result)

@@ -5,7 +5,7 @@ texts when it sorts and in approximate lookups: case does not count; symbols com
 accents, hyphens and apostrophes count only between texts that are otherwise equal.
 
 Thousands of lookups may search one table, each for one key. So the texts of a table that does not vary are put in order
-once, and texts of keys that it does not have are put between them.
+once, and texts of keys that it does not have get places between theirs, so that nothing of the table changes.
 
 Letters: n trials, k values of a trial.
 """
@@ -14,8 +14,9 @@ from __future__ import annotations
 
 import unicodedata
 from bisect import bisect_left, bisect_right
-from collections.abc import Callable, Iterable
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final, NamedTuple
 
@@ -35,11 +36,18 @@ class Ordered:
         kinds: (n, k).
         order: (n, k); 0 for blanks and errors.
         texts: in lower case, each once, in rising order; a text's `order` is its index here.
+        between: order -> text, of texts that stand between these.
     """
 
     kinds: Codes
     order: Floats
     texts: tuple[str, ...]
+    between: Mapping[float, str] = field(default_factory=dict)
+
+    def text(self, order: float) -> str:
+        """Return the text of an order, in lower case."""
+        found = self.between.get(order)
+        return self.texts[int(order)] if found is None else found
 
     @cached_property
     def rising(self) -> dict[int, tuple[Indices, Floats]]:
@@ -55,11 +63,11 @@ class Ordered:
     def column(self, index: int, n: int) -> Ordered:
         """Return the values at one index, in n trials: (n, 1)."""
         kinds, order = self.kinds[:, index : index + 1], self.order[:, index : index + 1]
-        return Ordered(np.broadcast_to(kinds, (n, 1)), np.broadcast_to(order, (n, 1)), self.texts)
+        return Ordered(np.broadcast_to(kinds, (n, 1)), np.broadcast_to(order, (n, 1)), self.texts, self.between)
 
     def flat(self) -> Ordered:
         """Return each value as a trial of its own: (n·k, 1)."""
-        return Ordered(self.kinds.reshape(-1, 1), self.order.reshape(-1, 1), self.texts)
+        return Ordered(self.kinds.reshape(-1, 1), self.order.reshape(-1, 1), self.texts, self.between)
 
 
 class _Texts(NamedTuple):
@@ -80,7 +88,8 @@ class _Texts(NamedTuple):
 def to_ordered(*values: Value) -> list[Ordered]:
     """Flatten values to (n, k) each and give them floats by which all of them compare.
 
-    Of the largest of those that do not vary the texts are put in order once for all calls.
+    Of the largest of those that do not vary the texts are put in order once for all calls. Where that is the last one,
+    the table, the others may have texts `between` its own.
     """
     still = max(filter(_is_kept, values), key=lambda value: value.numbers.size, default=None)
     if still is None:
@@ -92,12 +101,29 @@ def to_ordered(*values: Value) -> list[Ordered]:
     if not new:
         return [alone if value is still else _to_ordered(value, kept.ranks, kept.in_order) for value in values]
     before = [bisect_left(kept.keys, key) for key, _ in new]
+    if still is values[-1]:
+        places = _places_between(before)
+        at = dict(zip((text for _, text in new), places, strict=True))
+        ranks = at | {text: kept.ranks[text] for text in others - at.keys()}
+        between = {place: text for text, place in at.items()}
+        return [alone if value is still else _to_ordered(value, ranks, kept.in_order, between) for value in values]
     merged = np.insert(np.array(kept.in_order, object), before, np.array([text for _, text in new], object))
     ranks = {text: float(place + index) for index, (place, (_, text)) in enumerate(zip(before, new, strict=True))}
     ranks |= {text: kept.ranks[text] + bisect_right(before, kept.ranks[text]) for text in others - ranks.keys()}
     moved = alone.order + np.searchsorted(before, alone.order, side="right")
     own = Ordered(alone.kinds, np.where(alone.kinds == TEXT, moved, alone.order), tuple(merged.tolist()))
     return [own if value is still else _to_ordered(value, ranks, own.texts) for value in values]
+
+
+def _places_between(before: Sequence[int]) -> list[float]:
+    """Return different floats, in rising order, for texts that stand before the ones of these indices.
+
+    >>> _places_between([0, 2, 2])
+    [-0.5, 1.3333333333333333, 1.6666666666666665]
+    """
+    share = Counter(before)
+    first = {place: index for index, place in reversed([*enumerate(before)])}
+    return [place - 1.0 + (index - first[place] + 1.0) / (share[place] + 1.0) for index, place in enumerate(before)]
 
 
 _LEAST_KEPT: Final = 16
@@ -138,14 +164,16 @@ def search_each_trial(keys: Value, vector: Value, find: Callable[[Ordered, Order
     return np.stack(columns, axis=1).reshape(n, *keys.shape[1:])
 
 
-def _to_ordered(value: Value, ranks: dict[str, float], texts: tuple[str, ...]) -> Ordered:
+def _to_ordered(
+    value: Value, ranks: Mapping[str, float], texts: tuple[str, ...], between: Mapping[float, str] | None = None
+) -> Ordered:
     order = np.where(value.kinds >= ERROR, 0.0, value.numbers)
     if value.texts is not None:
         order = np.where(value.kinds == TEXT, _look_up_ranks(value.texts, ranks), order)
-    return Ordered(flatten_cells(value.kinds, value), flatten_cells(order, value), texts)
+    return Ordered(flatten_cells(value.kinds, value), flatten_cells(order, value), texts, between or {})
 
 
-def _look_up_ranks(texts: Objects, ranks: dict[str, float]) -> Floats:
+def _look_up_ranks(texts: Objects, ranks: Mapping[str, float]) -> Floats:
     return np.array([ranks[text.casefold()] for text in texts.ravel().tolist()], np.float64).reshape(texts.shape)
 
 

@@ -21,7 +21,7 @@ from xlmc.excel.workbook.workbook import CellContent, CellValue, DataTable, Shee
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
-__all__ = ["LazySheets", "dynamic_array_marks", "naming_file", "with_values"]
+__all__ = ["LazySheets", "dynamic_array_marks", "naming_file", "with_cells", "with_values"]
 
 _T = TypeVar("_T")
 
@@ -43,6 +43,7 @@ class LazySheets(Mapping[str, Sheet]):
         self._structure = structure
         self._entries = {entry.name: entry for entry in structure.worksheets}
         self._parsed: dict[str, Sheet] = {}
+        self._changed: frozenset[str] = frozenset()
 
     def __getitem__(self, name: str) -> Sheet:
         if name not in self._parsed:
@@ -67,6 +68,7 @@ class LazySheets(Mapping[str, Sheet]):
         """Return the same worksheets, but for those of these names."""
         found = copy(self)
         found._parsed = {**self._parsed, **changed}
+        found._changed = self._changed | changed.keys()
         return found
 
     def with_parts(self, parts: Mapping[str, bytes]) -> LazySheets:
@@ -88,11 +90,12 @@ class LazySheets(Mapping[str, Sheet]):
 
     def mentioning(self, words: Iterable[bytes]) -> Iterator[str]:
         """Return the names of the sheets whose part holds one of these words, in small letters, whatever its case
-        there.
+        there, and of those that `with_sheets` has changed.
         """
         for entry in self._entries.values():
             xml = self._parts[entry.part].lower()
-            if b"\0" in xml[:4] or any(word in xml for word in words):  # zero bytes: an encoding of its own
+            encoded = b"\0" in xml[:4]  # in an encoding of its own
+            if encoded or entry.name in self._changed or any(word in xml for word in words):
                 yield entry.name
 
     def holding(self, texts: Collection[str]) -> list[str]:
@@ -203,8 +206,15 @@ def with_contents(workbook: Workbook, contents: Mapping[Cell, CellContent]) -> W
     typed: dict[str, dict[tuple[int, int], CellContent]] = {}
     for cell, content in contents.items():
         typed.setdefault(cell.sheet, {})[cell[1:]] = content
-    sheets = workbook.sheets
-    changed = {name: replace(sheets[name], cells={**sheets[name].cells, **cells}) for name, cells in typed.items()}
-    # A ChainMap reads a sheet when it is looked up, and nobody writes to this one.
-    more = sheets.with_sheets(changed) if isinstance(sheets, LazySheets) else ChainMap(changed, sheets)  # type: ignore[arg-type]
+    more = with_cells(workbook.sheets, typed)
     return replace(workbook, sheets=more, parts={}, origin=workbook.parts or workbook.origin, sha256="", data=b"")
+
+
+def with_cells(
+    sheets: Mapping[str, Sheet], contents: Mapping[str, Mapping[tuple[int, int], CellContent]]
+) -> Mapping[str, Sheet]:
+    """Return the sheets with other contents in some cells; the others are still parsed when they are looked up."""
+    changed = {name: replace(sheets[name], cells={**sheets[name].cells, **new}) for name, new in contents.items()}
+    if isinstance(sheets, LazySheets):
+        return sheets.with_sheets(changed)
+    return ChainMap(changed, sheets)  # type: ignore[arg-type]  # which nobody writes to

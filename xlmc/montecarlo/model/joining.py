@@ -8,7 +8,6 @@ of one name are one assumption, drawn once, and must be defined alike.
 
 from __future__ import annotations
 
-from collections import ChainMap
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import fields, is_dataclass, replace
 from typing import Any, Final, TypeVar
@@ -17,6 +16,7 @@ from xlmc.errors import DefinitionError, FormulaError, Notice, SimulationError
 from xlmc.excel.address import Area, Cell, InFormula, host_of
 from xlmc.excel.formula import ir
 from xlmc.excel.formula.substitute import substitute
+from xlmc.excel.workbook.lazy_sheets import with_cells
 from xlmc.excel.workbook.workbook import CellContent, Formula, LinkedBook, Sheet, Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Check, Definitions, Filter, Forecast
 from xlmc.montecarlo.definitions.feeds import Feed, Feeding
@@ -266,11 +266,7 @@ class _Joining:
         for cell, content in formulas.items():
             if cell.sheet in own.sheets:
                 changed.setdefault(cell.sheet, {})[cell[1:]] = content
-        sheets = {
-            name: replace(own.sheets[name], cells={**own.sheets[name].cells, **new}) for name, new in changed.items()
-        }
-        # Read when looked up, and written to by nobody.
-        return replace(own, sheets=ChainMap(sheets, own.sheets), links=links)  # type: ignore[arg-type]
+        return replace(own, sheets=with_cells(own.sheets, changed), links=links)
 
 
 def _linked(source: CompiledModel, name: str, formulas: Mapping[Cell, CellContent]) -> LinkedBook:

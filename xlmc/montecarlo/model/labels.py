@@ -7,7 +7,6 @@ writes a 0, as XlsxWriter does. Excel fills it in when it opens the file, unless
 from __future__ import annotations
 
 import math
-from collections import ChainMap
 from collections.abc import Collection, Iterable, Iterator
 from dataclasses import replace
 
@@ -15,6 +14,7 @@ from xlmc.engine.graph.lowering import lower_cells
 from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver
+from xlmc.excel.workbook.lazy_sheets import with_cells
 from xlmc.excel.workbook.workbook import CellContent, CellValue, Table, Workbook
 from xlmc.montecarlo.definitions.tables.table_rows import as_text
 
@@ -44,12 +44,8 @@ def calculate_labels(workbook: Workbook) -> Workbook:
     for cell, value in {**found, **stale}.items():
         at = cell.row, cell.column
         written.setdefault(cell.sheet, {})[at] = replace(workbook.sheets[cell.sheet].cells[at], value=value)
-    sheets = ((name, workbook.sheets[name], cells) for name, cells in written.items())
-    calculated = {name: replace(sheet, cells={**sheet.cells, **cells}) for name, sheet, cells in sheets}
     notices = [_notice(cell, workbook.content(cell).value, value) for cell, value in stale.items()]
-    # A ChainMap reads a sheet when it is looked up, and nobody writes to this one: mypy wants a mapping to write to.
-    chained = ChainMap(calculated, workbook.sheets)  # type: ignore[arg-type]
-    return replace(workbook, sheets=chained, notices=(*workbook.notices, *notices))
+    return replace(workbook, sheets=with_cells(workbook.sheets, written), notices=(*workbook.notices, *notices))
 
 
 def _stale_values(workbook: Workbook, tables: Iterable[Table]) -> dict[Cell, CellValue]:

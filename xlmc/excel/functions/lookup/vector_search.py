@@ -98,9 +98,9 @@ def _hit_of_each_row(hits: Bools, last: bool) -> Indices:
 def _find_patterns(result: Indices, keys: Ordered, vector: Ordered, last: bool) -> Indices:
     """Replace the result of each key with wildcards by what its pattern finds: (m,)."""
     is_text, order = keys.kinds[:, 0] == TEXT, keys.order[:, 0]
-    for rank in np.unique(order[is_text]).astype(np.intp):
-        if is_pattern(keys.texts[rank]):
-            found = _hit_of_each_row(_match_pattern(vector, keys.texts[rank]), last)
+    for rank in np.unique(order[is_text]).tolist():
+        if is_pattern(text := keys.text(rank)):
+            found = _hit_of_each_row(_match_pattern(vector, text), last)
             result = np.where(is_text & (order == rank), found, result)
     return result
 

@@ -70,11 +70,13 @@ class Tied:
 
 @dataclass(eq=False)
 class Decided:
-    """A decision variable."""
+    """A decision variable; `steps` are its ends and the step, `kind` says how its values lie."""
 
     sheet: str
     cell: str
     name: str
+    steps: tuple[float, float, float] = (0.0, 1.0, 0.05)
+    kind: int = 1
 
 
 # ---------------------------------------------------------------- objects and their bytes
@@ -115,6 +117,9 @@ def stream(root):
         return (1 if isinstance(value, str) else 2), None
 
     def member(value):
+        if type(value) is int:
+            out.extend(struct.pack("<BBi", 8, 8, value))
+            return
         if value is None:
             out.append(10)
         elif isinstance(value, Thing) and value.inside:
@@ -277,7 +282,12 @@ def _thing(item):
             "ForecastCellRef", mPreferences=Thing(space + "FrcChartPrefs", **held), mVarName=Str(item.name), **own
         )
     if isinstance(item, Decided):
-        return _class("DecVarCellRef", mVarName=Str(item.name), **own)
+        low, high, step = item.steps
+        context = _table([(Str("_CustomValues"), None), (Str("_DecVarType"), item.kind)])
+        variable = Thing(
+            "Decisioneering.OCB.OptKernel.DecVar", a=low, b=0.25, c=high, d=step, e=-0.5, mContextData=context
+        )
+        return _class("DecVarCellRef", mVarName=Str(item.name), mVar=variable, **own)
     ends = {}
     for number, end in enumerate((item.first, item.second), 1):
         ends[f"mAssumption{number}WorksheetGuid"] = _guid_thing(guid(end.sheet))

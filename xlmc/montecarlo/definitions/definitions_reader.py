@@ -18,6 +18,7 @@ from xlmc.montecarlo.definitions.crystal_ball.precision_control import with_prec
 from xlmc.montecarlo.definitions.crystal_ball.refused import refused_forecasts, refused_rows
 from xlmc.montecarlo.definitions.definitions import (
     Correlation,
+    Decision,
     Definitions,
     Filter,
     Forecast,
@@ -137,6 +138,7 @@ def read_definitions(
     filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
     _remark_on_calls(calls, settings, findings)
     decisions = read_decisions(workbook, tables["xlmc_decisions"], computed, findings)
+    decisions = *decisions, *_not_in(decisions, dialogs.decisions)
     refuse_taken(solves, {each.cell: each.row for each in assumptions}, findings)
     drawn = {each.cell for each in assumptions if not each.frozen}
     what_if = tables_of_run(workbook, drawn, calls.shown.keys() | calls.unavailable.keys(), calls.rewritten)
@@ -188,6 +190,16 @@ def read_definitions(
         solves=solves,
         decisions=decisions,
     )
+
+
+def _not_in(known: Iterable[Decision], more: Iterable[Decision]) -> Iterator[Decision]:
+    """Return decisions of dialogs whose cells no row of a table has; of one name, those behind the first by cell."""
+    cells, names = {each.cell for each in known}, {name_key(each.name) for each in known}
+    for each in more:
+        if each.cell not in cells:
+            name = f"{each.name} ({each.cell})" if name_key(each.name) in names else each.name
+            names.add(name_key(name))
+            yield replace(each, name=name)
 
 
 def _switches(rows: Iterable[Filter | Evidence]) -> Iterator[tuple[str, tuple[Cell, bool]]]:

@@ -20,6 +20,7 @@ from xlmc.montecarlo.definitions.definitions import (
     DIALOG,
     Assumption,
     Correlation,
+    Decision,
     Definitions,
     Filter,
     Forecast,
@@ -107,6 +108,7 @@ def new_tables(workbook: Workbook, definitions: Definitions) -> list[NewTable]:
         NewTable("xlmc_forecasts", tuple(map(written.forecast, (f for f in answers if is_new(f.row))))),
         NewTable("xlmc_filters", tuple(map(written.filter, filters))),
         NewTable("xlmc_correlations", tuple(map(written.correlation, _new_pairs(definitions, is_new)))),
+        NewTable("xlmc_decisions", tuple(map(written.decision, (d for d in definitions.decisions if is_new(d.row))))),
         NewTable("xlmc_settings", tuple(_settings(workbook, definitions))),
     ]
     return [NewTable(each.kind, each.rows, tuple(_headings(each.rows))) for each in made if each.rows]
@@ -236,6 +238,14 @@ class _Written:
             "Correlation": self._parameter(each.value),
         }
         return NewRow(cells, "correlation", f"{each.first} and {each.second}", each.row, "a rank correlation")
+
+    def decision(self, each: Decision) -> NewRow:
+        """Write the row of a decision variable, whose values lie a step apart."""
+        low, second, high = each.values[0], each.values[1], each.values[-1]
+        step = float(f"{second - low:.12g}")
+        cells: dict[str, Entry] = {"Name": each.name, "Cell": self._reference(each.cell)}
+        cells |= {"Low": low, "High": high, "Step": step}
+        return NewRow(cells, "decision", each.name, each.cell, "a decision variable")
 
     def _distribution(self, each: Assumption) -> dict[str, Entry]:
         cells: dict[str, Entry] = {"Distribution": FAMILIES[each.distribution].name}

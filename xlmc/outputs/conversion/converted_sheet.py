@@ -193,6 +193,7 @@ _TITLES: Final[Mapping[str, str]] = {
     "xlmc_forecasts": "Forecasts",
     "xlmc_filters": "Filters",
     "xlmc_correlations": "Rank correlations",
+    "xlmc_decisions": "Decisions",
     "xlmc_settings": "Settings of the run",
     CONVERTED: "What was converted, and from where",
 }

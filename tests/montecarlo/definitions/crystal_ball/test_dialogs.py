@@ -15,6 +15,7 @@ from simulated import simulated
 
 from xlmc.analysis.results.saved import keep, open_run
 from xlmc.engine.engines import ENGINES
+from xlmc.excel.address import Cell
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.definitions.definitions import Settings
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
@@ -187,10 +188,20 @@ def test_the_range_of_a_certainty_is_a_threshold(read):
     assert any("the certainty of this range is reported" in notice.message for notice in found.notices)
 
 
-def test_decision_variables_keep_their_values_and_are_named_once(read):
+def test_decision_variables_are_decisions_and_are_named_once(read):
     found = read(SKID, TOTAL, Decided(S, "$B$3", "Share"))
+    (sentence,) = [notice for notice in found.notices if "decision" in notice.message]
+    assert "'Share' (Sheet1!B3, 0 to 1 in steps of 0.05)" in sentence.message
+    (decision,) = found.decisions
+    assert (decision.name, decision.cell, decision.between) == ("Share", Cell(S, 3, 2), None)
+    assert decision.values == pytest.approx([0.05 * number for number in range(21)])
+
+
+def test_decision_variables_of_a_kind_that_was_not_met_keep_their_values(read):
+    found = read(SKID, TOTAL, Decided(S, "$B$3", "Share", kind=0))
     (sentence,) = [notice for notice in found.notices if "Decision" in notice.message]
-    assert "'Share' (Sheet1!B3)" in sentence.message
+    assert "keep the values of their cells: 'Share' (Sheet1!B3)" in sentence.message
+    assert not found.decisions
 
 
 def test_the_answers_are_those_of_the_distributions(tmp_path):

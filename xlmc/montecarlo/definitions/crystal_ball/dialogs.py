@@ -38,12 +38,14 @@ from xlmc.montecarlo.definitions.definitions import (
     DIALOG,
     Assumption,
     Correlation,
+    Decision,
     Filter,
     Forecast,
     Parameter,
 )
 from xlmc.montecarlo.definitions.in_cells.calls import holds_call
 from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.definitions.tables.decisions import values_between
 from xlmc.montecarlo.definitions.tables.identity import Claims
 from xlmc.montecarlo.definitions.tables.table_rows import number_in, static_value
 from xlmc.montecarlo.distributions import FAMILIES
@@ -54,6 +56,7 @@ from xlmc.montecarlo.sampling.draws import Draw
 __all__ = ["UNPROVEN", "FromDialogs", "read_dialogs"]
 
 UNPROVEN: Final = "this was not yet met in a genuine file: compare once in Crystal Ball"
+_INFERRED: Final = "What their numbers mean was inferred from one file: compare once in Crystal Ball"
 _CURE: Final = "Define the cell in the table xlmc_assumptions, or look it up in Crystal Ball"
 _NORMAL: Final = {2: "mean", 3: "std_dev"}
 """Codes of the parameters of a Normal that may come from cells; those of other families are unknown."""
@@ -78,6 +81,7 @@ class FromDialogs:
     forecasts: list[Forecast] = field(default_factory=list)
     filters: list[Filter] = field(default_factory=list)
     correlations: list[Correlation] = field(default_factory=list)
+    decisions: list[Decision] = field(default_factory=list)
     rewritten: dict[Cell, ir.Expression | FormulaError] = field(default_factory=dict)
     precisions: dict[str, Precision] = field(default_factory=dict)
     damages: list[str] = field(default_factory=list)
@@ -473,10 +477,22 @@ class _Dialogs:
 
     def _remark_on_decisions(self, stored: list[tuple[str, Stored]]) -> None:
         found = self._placed(stored, StoredDecision)
-        if found:
-            shown = [(self._shown(sheet, each.name, each.references, cell), cell) for sheet, each, cell in found]
-            named = ", ".join(f"{name!r} ({cell})" for name, cell in shown)
-            message = f"decision variables of Crystal Ball keep the values of their cells: {named}"
+        read, left = list[str](), list[str]()
+        for sheet, each, cell in found:
+            name = self._shown(sheet, each.name, each.references, cell)
+            decision = None if self._computed.at_all(cell) else self._findings.attempt(_decided, name, each, cell)
+            if decision is None:
+                left.append(f"{name!r} ({cell})")
+                continue
+            assert each.steps is not None
+            low, high, step = map(show, each.steps)
+            read.append(f"{name!r} ({cell}, {low} to {high} in steps of {step})")
+            self._found.decisions.append(decision)
+        if read:
+            takes = "a run takes what the cells of decision variables hold, and xlmc optimise finds the best values"
+            self._findings.notice(f"{takes}: {', '.join(read)}. {_INFERRED}", found[0][2])
+        if left:
+            message = f"decision variables of Crystal Ball keep the values of their cells: {', '.join(left)}"
             self._findings.notice(message, found[0][2])
 
     def _remark_on_others(self, stored: Iterator[Stored]) -> None:
@@ -503,6 +519,15 @@ def _free_name(name: str, cell: Cell, claims: Claims, findings: Findings) -> str
         findings.notice(f"another {claims.kind} is called {name!r}; this one is called '{name} ({cell})'", cell)
         name = f"{name} ({cell})"
     return claims.take_name(name, cell)
+
+
+def _decided(name: str, stored: StoredDecision, cell: Cell) -> Decision | None:
+    """Return the decision of a variable whose values lie a step apart; otherwise None.
+
+    Raises:
+        DefinitionError: it has too many values.
+    """
+    return None if stored.steps is None else Decision(name, cell, values_between(*stored.steps, cell), cell)
 
 
 def _accepts_inside(stored: ForecastFilter, cell: Cell) -> Filter:

@@ -132,11 +132,16 @@ class StoredCorrelation:
 
 @dataclass(frozen=True, slots=True)
 class StoredDecision:
-    """A decision variable."""
+    """A decision variable.
+
+    Attributes:
+        steps: its least and largest value and the step between values; None where they are of a kind that was not met.
+    """
 
     guid: str
     name: str
     references: tuple[CellReference, ...]
+    steps: tuple[float, float, float] | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -239,7 +244,26 @@ def _correlation(thing: Thing) -> StoredCorrelation:
 
 
 def _decision(thing: Thing) -> StoredDecision:
-    return StoredDecision(_guid(_thing(thing, "mGuid")), _text(thing, "mVarName"), _references(thing))
+    return StoredDecision(_guid(_thing(thing, "mGuid")), _text(thing, "mVarName"), _references(thing), _steps(thing))
+
+
+_IN_STEPS: Final = 1
+"""The type of the one decision variable that was met, whose values lie a step apart."""
+
+
+def _steps(thing: Thing) -> tuple[float, float, float] | None:
+    """Read the bounds and the step of a decision variable: `a`, `c` and `d` of its DecVar; `b` is the base value."""
+    variable = thing.members.get("mVar")
+    if not isinstance(variable, Thing):
+        return None
+    context = variable.members.get("mContextData")
+    if not isinstance(context, Thing):
+        return None
+    known = dict(zip(map(str, _list(context, "Keys")), _list(context, "Values"), strict=False))
+    if known.get("_DecVarType") != _IN_STEPS or known.get("_CustomValues") is not None:
+        return None
+    low, high, step = (_number(variable, member) for member in "acd")
+    return (low, high, step) if math.isfinite(low + high + step) and low < high and step > 0.0 else None
 
 
 _READERS: Final[Mapping[str, Callable[[Thing], Stored]]] = {

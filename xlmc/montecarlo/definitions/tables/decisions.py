@@ -9,6 +9,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import DefinitionError
+from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import Decision
@@ -18,7 +19,7 @@ from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
 from xlmc.montecarlo.definitions.tables.table_rows import Row, number, optional_text, rows_of
 from xlmc.montecarlo.distributions.parameters import show
 
-__all__ = ["read_decisions"]
+__all__ = ["read_decisions", "values_between"]
 
 _KNOWN = ("Name", "Value", "Cell", "Low", "High", "Step", "Values", "Units")
 _BY_RANGE = ("Low", "High", "Step")
@@ -83,9 +84,17 @@ def _values(row: Row) -> tuple[float, ...]:
     if not low < high or not step > 0.0:
         message = f"From {show(low)} to {show(high)} in steps of {show(step)} there are no values"
         raise DefinitionError(message, where=row.cell("Low"), hint="Give Low below High, and Step above 0")
+    return values_between(low, high, step, row.cell("Step") if row.filled("Step") else row.where)
+
+
+def values_between(low: float, high: float, step: float, where: Cell) -> tuple[float, ...]:
+    """Return the values from one number to another, a step apart.
+
+    Raises:
+        DefinitionError: they are too many.
+    """
     count = math.floor((high - low) / step + _SLACK) + 1
     if count > _MOST_VALUES:
-        where = row.cell("Step") if row.filled("Step") else row.where
         raise DefinitionError(
             f"{count:,} values are more than {_MOST_VALUES:,}", where=where, hint="Give a larger Step"
         )

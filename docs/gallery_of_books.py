@@ -21,6 +21,7 @@ BOOKS = {
     "examples/intersection.xlsx": "An intersection: momentum, rotation and restitution, the paper's case study",
     "examples/intersection-momentum.xlsx": "The same intersection by momentum alone",
     "examples/nearly-head-on.xlsx": "A nearly head-on collision with evidence from recorders and damage",
+    "examples/rest-positions.xlsx": "Impact speeds searched from where the vehicles came to rest",
     "examples/barrier-corner.xlsx": "The corner of a barrier: one vehicle, planar impact",
     "examples/collinear-equal-cars.xlsx": "Two equal cars in one line",
     "examples/collinear-head-on.xlsx": "Head-on in one line",
@@ -42,7 +43,7 @@ BOOKS = {
 """Book -> what it is about."""
 
 _TRIALS = 20_000
-_MOST = 200_000
+_ACCEPTED = 3_000
 
 
 def setup(app: Sphinx) -> dict[str, bool]:
@@ -68,7 +69,7 @@ def _card(pages: Path, folder: Path, book: str, title: str) -> str:
     model = xlmc.load(ROOT / book)
     run = model.simulate(_TRIALS)
     if run.accepted < _TRIALS / 10:
-        run = model.simulate(_MOST)
+        run = model.simulate(until_accepted=_ACCEPTED)
     shown = _shown(run)
     image: tuple[str, ...] = ()
     if shown is not None:

@@ -233,17 +233,23 @@ class Diagram:
 
 @dataclass(frozen=True, slots=True)
 class PastedTable:
-    """A table that is pasted as it is, and what is read from it.
+    """A table that is pasted as it is, headings and all, and what is read from it.
 
     Attributes:
-        columns: headings; the table stands below them, from column A on.
+        columns: headings that it has until others are pasted over them, from column A on.
+        width: room for so many columns.
         rows: room for so many.
-        read: quantities, each a named cell beside the table.
+        computed: heading, formula and number format of columns beside it; `{r}` is the row.
+        read: quantities, each a named cell.
+        subtitle: of its sheet.
     """
 
     columns: tuple[str, ...]
+    width: int
     rows: int
+    computed: tuple[tuple[str, str, str], ...]
     read: tuple[Equation, ...]
+    subtitle: str
 
 
 @dataclass(frozen=True, slots=True)

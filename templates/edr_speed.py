@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 from templates.braking import BRAKING_CHECK
 from templates.checks import check, checks_section
 from templates.description import (
@@ -21,6 +24,8 @@ from templates.description import (
 )
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
+from templates.other_readings import cut_off_delta_v, recorded_delta_v
+from templates.restitution import restitution_input
 from templates.road_friction import FRICTION_SHAPE, FRICTION_SOURCE
 from templates.speed_answer import speed_answer
 from templates.units import CONVERSIONS, GRAVITY, MPH
@@ -85,6 +90,18 @@ _ASSUMPTIONS = (
         {"Low": 0, "High": 0.5},
         number_format="0.00",
     ),
+    replace(restitution_input("e", "Restitution, along one line"), frozen="=COUNT(w_own,w_other)<2"),
+    Input(
+        "u_dv",
+        "u",
+        "Recorded delta-V over the true one",
+        "",
+        1,
+        "49 CFR 563.8: within 10 %. Of a delta-V whose whole pulse was kept; held until a further event is entered",
+        {"Low": 0.9, "High": 1.1},
+        number_format="0.00",
+        frozen="=COUNT(dv_1st,t_2nd)<2",
+    ),
 )
 
 
@@ -144,19 +161,51 @@ _OPTIONAL = (
     ),
     Input("w_own", "w1", "Weight of this vehicle", "[lb|kg]", None, "Optional. For the closing speed from the delta-V"),
     Input("w_other", "w2", "Weight of the other vehicle", "[lb|kg]", None, "Optional. The same"),
-    Input("e", "e", "Restitution", "", None, "Optional. The same; along one line only"),
+    Input(
+        "v_other",
+        "v2",
+        "Speed of what was struck, along this vehicle's way",
+        "[mph|km/h]",
+        None,
+        "Optional. For a delta-V as evidence. Blank: it stood; negative: it approached",
+    ),
+    *(
+        Input(symbol, notation, name, unit, None, source)
+        for symbol, notation, name, unit, source in (
+            (
+                "dv_1st",
+                "ΔV1st",
+                "First event: recorded delta-V along, with its sign",
+                "[mph|km/h]",
+                "Optional, of a recording with several events. As the report prints it: negative where it slowed",
+            ),
+            (
+                "t_2nd",
+                "t2nd",
+                "Time from the first event to the second",
+                "s",
+                "Optional. The report's time between events",
+            ),
+            ("f_2nd", "f2nd", "Deceleration between them", "g", "Optional. Blank: none, it rolled"),
+            ("dv_2nd", "ΔV2nd", "Second event: recorded delta-V along", "[mph|km/h]", "Optional. As the first"),
+            ("t_3rd", "t3rd", "Time from the second event to the third", "s", "Optional. The same"),
+            ("f_3rd", "f3rd", "Deceleration between those", "g", "Optional. The same"),
+        )
+    ),
 )
 
 _ROWS = 101
 """10 s at ten a second, or 5 s at twenty."""
 
 
+_HEADINGS = "$A$5:$J$5"
+
+
 def _column(letter: str) -> str:
-    return f"{letter}$6:{letter}${5 + _ROWS}".replace(letter, f"${letter}")
+    return f"${letter}$6:${letter}${5 + _ROWS}"
 
 
-_TIME, _SPEED, _BRAKE = map(_column, "ABC")
-_ON = f"({_TIME}>rec_on)*ISNUMBER({_TIME})*ISNUMBER({_SPEED})"
+_TIME, _SPEED, _BRAKE, _PEDAL, _SLIPS, _APART = map(_column, "KLMNOP")
 _FEW = 'IF(rec_slipped<3,"–",'
 
 
@@ -164,10 +213,79 @@ def _last_off(word: str) -> str:
     return f"IF(COUNTIFS({_BRAKE},{word})>0,MAXIFS({_TIME},{_BRAKE},{word}),MIN({_TIME})-1)"
 
 
-_TABLE = PastedTable(
-    ("Time, s", "Speed, [mph|km/h]", "Brake: On/Off or 1/0"),
-    _ROWS,
+def _headed(symbol: str, name: str, *patterns: str, note: str = "") -> Equation:
+    """The first column whose heading is like one of these, 0 if there is none."""
+    formula = "0"
+    for pattern in reversed(patterns):
+        formula = f'IFERROR(MATCH("{pattern}",{_HEADINGS},0),{formula})'
+    return Equation(symbol, "", name, "", formula, note=note, number_format="0")
+
+
+def _cell(column: str) -> str:
+    return f"INDEX($A{{r}}:$J{{r}},MAX({column},1))"
+
+
+def _number(column: str) -> str:
+    """The number in a cell, or the one its text begins with, as in "45 [72]"; no number gives an empty text."""
+    cell = _cell(column)
+    plain = f'SUBSTITUTE(TRIM({cell}),"−","-")'
+    first = f'IFERROR(VALUE(LEFT({plain},FIND(" ",{plain}&" ")-1)),"")'
+    return f'IF({column}=0,"",IF(ISNUMBER({cell}),{cell},{first}))'
+
+
+_BRACKET = _cell("rec_c_speed")
+_COMPUTED = (
+    ("Time read, s", _number("rec_c_time"), "0.00"),
     (
+        "Speed read, [mph|km/h]",
+        f'IF(rec_bracket=1,IFERROR(VALUE(MID({_BRACKET},FIND("[",{_BRACKET})+1,'
+        f'FIND("]",{_BRACKET})-FIND("[",{_BRACKET})-1)),""),{_number("rec_c_speed")})',
+        "0.0",
+    ),
+    ("Brake read", f'IF(rec_c_brake=0,"",IF({_cell("rec_c_brake")}="","",{_cell("rec_c_brake")}))', "General"),
+    ("Pedal read", _number("rec_c_pedal"), "0"),
+    ("Wheels slip", "IF(AND(ISNUMBER(rec_on),ISNUMBER(K{r}),ISNUMBER(L{r})),IF(K{r}>N(rec_on),1,0),0)", "0;-0;;@"),
+    ("From mean time, s", "IF(AND(O{r}=1,ISNUMBER(rec_mid)),K{r}-rec_mid,0)", "0.00;-0.00;;@"),
+)
+
+_TABLE = PastedTable(
+    columns=("Time, s", "Speed, [mph|km/h]", "Brake: On/Off or 1/0", "Accelerator, %"),
+    width=10,
+    rows=_ROWS,
+    computed=_COMPUTED,
+    subtitle="Paste the pre-crash table of the report at A5, with its headings, or type below these. They say which "
+    "column is which. Blank: sheet Inputs says what was recorded.",
+    read=(
+        _headed("rec_c_time", "Column of the times", "*time*", note="The first whose heading has the word: 1 is A"),
+        _headed("rec_c_speed", "Column of the speeds", "*vehicle*speed*", "*speed*vehicle*", "*speed*"),
+        _headed("rec_c_brake", "Column of the brake", "*brake*"),
+        _headed("rec_c_pedal", "Column of the accelerator", "*accelerator*", "*throttle*", note="0: none, none needed"),
+        Equation(
+            "rec_bracket",
+            "",
+            "Speeds are those in brackets, as in 45 [72] (1 = yes)",
+            "",
+            f'IF(ISNUMBER(SEARCH("[[mph|km/h]",INDEX({_HEADINGS},MAX(rec_c_speed,1)))),1,0)',
+            note="Where the heading has [[mph|km/h]] in brackets",
+            number_format="0",
+        ),
+        Equation(
+            "rec_unit",
+            "",
+            "Its heading names no other unit alone (1 = yes)",
+            "",
+            f'IF(OR(ISNUMBER(SEARCH("[mph|km/h]",INDEX({_HEADINGS},MAX(rec_c_speed,1)))),'
+            f'NOT(ISNUMBER(SEARCH("[km/h|mph]",INDEX({_HEADINGS},MAX(rec_c_speed,1)))))),1,0)',
+            number_format="0",
+        ),
+        Equation(
+            "rec_begun",
+            "",
+            "Cells of the table that are filled",
+            "",
+            f"COUNTA($A$6:$J${5 + _ROWS})",
+            number_format="0",
+        ),
         Equation(
             "rec_n",
             "",
@@ -229,7 +347,7 @@ _TABLE = PastedTable(
             "",
             "Samples after that, with wheels that slip",
             "",
-            f"IF(ISNUMBER(rec_on),SUMPRODUCT({_ON}),0)",
+            f"SUM({_SLIPS})",
             number_format="0",
         ),
         Equation(
@@ -237,23 +355,23 @@ _TABLE = PastedTable(
             "",
             "Sum of their speeds",
             "",
-            f"IF(rec_slipped>0,SUMPRODUCT({_ON}*{_SPEED}),0)",
+            f"SUMPRODUCT({_SLIPS},{_SPEED})",
             number_format="0.0",
         ),
-        Equation("rec_mid", "", "Their mean time, s", "s", f"{_FEW}SUMPRODUCT({_ON}*{_TIME})/rec_slipped)"),
+        Equation("rec_mid", "", "Their mean time, s", "s", f"{_FEW}SUMPRODUCT({_SLIPS},{_TIME})/rec_slipped)"),
         Equation(
             "rec_spread",
             "",
             "Sum of squares of their times about it",
             "s²",
-            f"{_FEW}SUMPRODUCT({_ON}*({_TIME}-rec_mid)^2))",
+            f"{_FEW}SUMSQ({_APART}))",
         ),
         Equation(
             "rec_slope",
             "",
             "Least squares: change of recorded speed in a second",
             "",
-            f"{_FEW}SUMPRODUCT({_ON}*({_TIME}-rec_mid)*{_SPEED})/rec_spread)",
+            f"{_FEW}SUMPRODUCT({_APART},{_SPEED})/rec_spread)",
             note="One line through all samples with slip. A dash: fewer than 3; sheet Inputs has the friction",
         ),
         Equation(
@@ -272,6 +390,15 @@ _TABLE = PastedTable(
             "",
             "IF(rec_slipped<3,1,SQRT(1/rec_slipped+(rec_end-rec_mid)^2/rec_spread))",
             note="Samples are rounded each by itself, so that a line through many is known better than one of them",
+        ),
+        Equation(
+            "rec_released",
+            "",
+            "Last time at which the accelerator was pressed, s",
+            "s",
+            f'IF(COUNTIFS({_PEDAL},">0")>0,MAXIFS({_TIME},{_PEDAL},">0"),"–")',
+            note="A dash: no such column, or never pressed",
+            number_format="0.00",
         ),
     ),
 )
@@ -413,6 +540,45 @@ _WHOLE = (
     ),
 )
 
+_RELEASED = (
+    Equation(
+        "t_released",
+        "trel",
+        "Time from the accelerator's release to the impact, at most",
+        "s",
+        'IF(AND(ISNUMBER(rec_released),rec_n>=2),rec_end-rec_released+tau,"–")',
+        "record",
+        "It was released after the sample that still shows it pressed. A dash without a column of it.",
+        number_format="0.00",
+    ),
+)
+
+_EVENTS = (
+    Equation(
+        "v_2nd_[mph|kmh]",
+        "v2nd",
+        "Speed along, at the second event",
+        "[mph|km/h]",
+        f'IF(AND(ISNUMBER(dv_1st),ISNUMBER(t_2nd)),v_impact_s*{MPH}+dv_1st/u_dv-N(f_2nd)*g*t_2nd*{MPH},"–")',
+        "vi + ΔV1/u − a·t",
+        "From the speed at the impact, which is that of the first event, its delta-V, and the time to the second.",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
+        "v_3rd_[mph|kmh]",
+        "v3rd",
+        "Speed along, at the third event",
+        "[mph|km/h]",
+        "IF(AND(ISNUMBER(v_2nd_[mph|kmh]),ISNUMBER(dv_2nd),ISNUMBER(t_3rd)),"
+        f'v_2nd_[mph|kmh]+dv_2nd/u_dv-N(f_3rd)*g*t_3rd*{MPH},"–")',
+        "the same",
+        "A dash: no such event.",
+        Role.ANSWER,
+        "0.00",
+    ),
+)
+
 _ANSWERS = (
     speed_answer("vi", "vi", "Speed at the impact", "v_impact_s"),
     Equation(
@@ -462,14 +628,37 @@ _DELTA_V = (
     ),
 )
 
+_RECORD_TIMES = f"Record!{_TIME}"
+
+_GIVEN_DELTA_V = (
+    Equation(
+        "dv_along_[mph|kmh]",
+        "ΔValong",
+        "Delta-V along that the speed at the impact gives",
+        "[mph|km/h]",
+        f'IF(AND(w_own>0,w_other>0,e>-1),(v_impact_s*{MPH}-N(v_other))*(1+e)/(1+w_own/w_other),"–")',
+        "(vi − v2)·(1 + e)/(1 + m1/m2)",
+        "Along one line. The delta-V that was recorded may be evidence of it: sheet Evidence.",
+        number_format="0.00",
+    ),
+)
+
 _CHECKS = checks_section(
-    5,
+    6,
     check(
         "check_samples",
         "The brake was first on at a sample that is given",
         "AND(ISNUMBER(v_on_[mph|kmh]),ISNUMBER(x_on),OR(rec_n>=2,AND(n_on>=0,n_on<=n_given+1,n_on=INT(n_on))))",
         "record",
         "FALSE: fill in the recorded speeds back to the sample at which the brake was first on.",
+    ),
+    check(
+        "check_table",
+        "The pasted table was read: its columns, its unit, every sample",
+        f"OR(rec_begun=0,AND(rec_c_time>0,rec_c_speed>0,rec_c_brake>0,rec_unit=1,rec_n>=2,COUNT({_RECORD_TIMES})=rec_n))",
+        "record",
+        "FALSE: a heading of sheet Record names no time, speed or brake, or speeds in another unit; or a time or speed "
+        "is no number.",
     ),
     check(
         "check_last",
@@ -519,6 +708,14 @@ _DIAGRAM = Diagram(
     ),
     remark="Drawn from the cells below.",
 )
+
+
+def _as_evidence(made: Callable[[str, str], EvidenceRow]) -> EvidenceRow:
+    """A row of the recorded delta-V, which needs both weights, and is no filter then."""
+    row = made("«1» delta-V along", "dv_along_[mph|kmh]")
+    what = "Without its sign; leave the recorded delta-V of sheet Inputs blank then, and enter both weights there"
+    return replace(row, source=f"{what}. {row.source}")
+
 
 _GUIDE = (
     EXAMPLE_NUMBERS,
@@ -573,9 +770,10 @@ TEMPLATE = Template(
     optional=_OPTIONAL,
     sections=(
         Section("1  Speed at the last sample and at the impact", _SPEEDS),
-        Section("2  The record", (*_RECORD, *_WHOLE)),
+        Section("2  The record", (*_RECORD, *_WHOLE, *_RELEASED)),
         Section("3  Answers (the forecasts)", _ANSWERS),
-        Section("4  Recorded delta-V", _DELTA_V),
+        Section("4  Recorded delta-V", (*_DELTA_V, *_GIVEN_DELTA_V)),
+        Section("5  Optional: further events of the recording", _EVENTS),
         _CHECKS,
     ),
     forecasts=(
@@ -584,6 +782,8 @@ TEMPLATE = Template(
         ForecastRow("«1» way from brake on to the impact", "x_on", "[ft|m]"),
         ForecastRow("«1» way from the first sample to the impact", "x_record", "[ft|m]"),
         ForecastRow("«1» time from brake on to the impact, at least", "t_braked", "s", stated="lower bound"),
+        ForecastRow("«1» speed at the second event", "v_2nd_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» speed at the third event", "v_3rd_[mph|kmh]", "[mph|km/h]"),
     ),
     filters=(
         FilterRow("Forward at the impact", "v_impact_s", "The vehicle had not stopped", above=0),
@@ -611,6 +811,7 @@ TEMPLATE = Template(
             {},
             "Enter the length surveyed, and how far it may be off: marks begin after the brake does",
         ),
+        *(_as_evidence(made) for made in (recorded_delta_v, cut_off_delta_v)),
     ),
     settings=(("Trials", 200_000), ("Seed", 999)),
     correlations=(),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from templates import (
     airborne,
     collinear,
@@ -13,11 +15,12 @@ from templates import (
     time_distance,
     video_speed,
 )
-from templates.description import GuideSection, Template
+from templates.description import ForecastRow, GuideSection, Template
 from templates.editions import Edition, edition
 from templates.filled import filled
 from templates.planar_forward import describe as planar_forward
 from templates.two_vehicles.example_scene import FORWARD_EXAMPLE
+from templates.vehicles import vehicle
 
 __all__ = ["PUBLISHED"]
 
@@ -95,8 +98,9 @@ _TEXTBOOK = filled(
     ),
 )
 
+_FORWARD = edition(planar_forward(FORWARD_EXAMPLE), Edition.IMPERIAL)
 _BARRIER = filled(
-    edition(planar_forward(FORWARD_EXAMPLE), Edition.IMPERIAL),
+    _FORWARD,
     "Front corner into a barrier",
     "SAE 2019-01-0422: 39.95 mph, tangent at 74.6°, impulse ratio up to 0.82, e = 0",
     {
@@ -258,6 +262,51 @@ _NEARLY_HEAD_ON = filled(
     ),
 )
 
+_SEARCH_RANGE = "Searched: all that the scene allows"
+_REST = filled(
+    replace(
+        _FORWARD,
+        settings=(("Until accepted", 10_000), ("Seed", 999)),
+        forecasts=(
+            *(row for row in _FORWARD.forecasts if row.symbol.startswith(("V1_fits", "V2_fits", "dV"))),
+            *(ForecastRow(f"{vehicle(j)} approach angle that fits", f"alpha_fits_{j}", "deg") for j in (1, 2)),
+        ),
+    ),
+    "Impact speeds searched from rest positions",
+    "Both vehicles' departure and travel to rest are known; speeds and headings are searched for",
+    {
+        "w_1": (3400, 3600),
+        "I_1": (1950, 2250),
+        "alpha_1": (-6, 6),
+        "V1_before": (10, 70),
+        "f_1": (0.6, 0.75),
+        "x_1": (78, 86),
+        "y_1": (0, 12),
+        "w_2": (3000, 3200),
+        "I_2": (1600, 1900),
+        "alpha_2": (75, 105),
+        "V2_before": (0, 50),
+        "f_2": (0.6, 0.75),
+        "x_2": (4, 24),
+        "y_2": (-35, -29),
+        "gamma_t": (80, 100),
+        "e_n": (0.04, 0.24),
+        "e_t": (0, 0.25),
+    },
+    _SEARCH_RANGE,
+    _about(
+        "What an optimiser of PC-Crash does, with all solutions in place of one: impact speeds and headings are drawn "
+        "from wide ranges, the impact and the run-out follow, and evidence keeps the trials that end where the "
+        "vehicles were found. The base case is the middle of every range; it does not fit.",
+        "The scene is computed, so that its truth is known: 38 mph at 0° into 24 mph at 90°, friction 0.68, "
+        "restitution 0.12 and 0.1. The vehicles left at 21.0° and 35.5° and went 17.8 and 38.8 ft: these are the "
+        "readings, within 2° and 1.5 ft.",
+        "One trial in about 7,000 fits, so the run goes on until 10,000 are accepted (sheet Results wanted). A single "
+        "best fit would hide how wide the answer is.",
+    ),
+    {"beta_1": (21.0, 2), "s_1": (17.8, 1.5), "beta_2": (35.5, 2), "s_2": (38.8, 1.5)},
+)
+
 PUBLISHED: dict[str, Template] = {
     "skid-100-ft": _SKID,
     "yaw-mark": _YAW,
@@ -271,5 +320,6 @@ PUBLISHED: dict[str, Template] = {
     "edr-hard-braking": _RECORDED,
     "video-two-frames": _TWO_FRAMES,
     "nearly-head-on": _NEARLY_HEAD_ON,
+    "rest-positions": _REST,
 }
 """File name without its ending -> what the workbook says."""

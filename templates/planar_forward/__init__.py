@@ -89,6 +89,31 @@ _CLOSURE = Input(
     choices=(1, 2),
 )
 
+_SEARCHED = (
+    Equation(
+        "V{j}_fits_[mph|kmh]",
+        "V{j}fit ([mph|km/h])",
+        "{who} impact speed that fits",
+        "[mph|km/h]",
+        "V{j}_before",
+        "input",
+        "<As drawn. Where evidence says how the vehicles went to rest, its trials tell the speed that leads there.|>",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
+        "alpha_fits_{j}",
+        "α{j}fit",
+        "{who} approach angle that fits",
+        "deg",
+        "alpha_{j}",
+        "input",
+        "",
+        Role.ANSWER,
+        "0.0",
+    ),
+)
+
 _FURTHER = (
     Equation(
         "V{j}f_[mph|kmh]",
@@ -153,7 +178,7 @@ def describe(scene: Scene) -> Template:
         optional=(*duration_inputs(), *drawing_inputs()),
         sections=(
             *model_sections(),
-            Section("5  Answers (the forecasts)", for_both((DELTA_V_ANSWER, *_FURTHER))),
+            Section("5  Answers (the forecasts)", for_both((DELTA_V_ANSWER, *_FURTHER, *_SEARCHED))),
             Section("6  Direction of force, yaw, energy", for_both(FORCE + ROTATION + APPROACH)),
             duration_section(7),
             checks_section(8, *_CHECKS),
@@ -202,6 +227,7 @@ def _evidence() -> tuple[EvidenceRow, ...]:
 
 def _forecasts() -> tuple[ForecastRow, ...]:
     patterns = (
+        ("impact speed that fits", "V{j}_fits_[mph|kmh]", "[mph|km/h]"),
         ("delta-V", "dV{j}_[mph|kmh]", "[mph|km/h]"),
         ("speed after", "V{j}f_[mph|kmh]", "[mph|km/h]"),
         ("departure angle", "beta_{j}", "deg"),

@@ -15,7 +15,11 @@ _WHEN = GuideSection(
         "where the vehicles go. Speeds from a recorder or a video; a speed that somebody claims; approaches so "
         "parallel that momentum cannot find the speeds.",
         "Compare departure angles and travel to rest with the scene: a claimed speed that cannot reach them is "
-        "refuted. To use the scene as evidence, add filter rows on beta and s with the limits it sets.",
+        "refuted.",
+        "Impact speeds are searched from rest positions, as an optimiser does: give speeds and headings the widest "
+        "ranges that the scene allows, and enter on sheet Evidence the departure angles and the travel to rest as "
+        "surveyed. The trials that are kept are all that lead there. The example rest-positions shows it; run it with "
+        "--until-accepted, since few trials fit.",
         "It is planar-impact turned round: its answers, given that model's speeds and restitutions, are that model's "
         "inputs. Use planar-impact where directions and run-out are known better than speeds.",
         "Both vehicles are rigid and move in the plane; the impulse acts at one point, at one instant, at full crush. "

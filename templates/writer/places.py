@@ -10,6 +10,7 @@ __all__ = [
     "HEADER_ROW",
     "MOST_CAPTIONS",
     "RECORD",
+    "RECORD_VALUES",
     "TESTS",
     "VALUE_COLUMN",
     "WAITING",
@@ -31,6 +32,8 @@ WAITING = "Run-out"
 """The sheet of inputs that wait."""
 RECORD = "Record"
 """The sheet of a table that is pasted."""
+RECORD_VALUES = 17
+"""The column of that sheet in which what is read from the table stands."""
 TESTS = "Stiffness"
 """The sheet of rows of tests."""
 MOST_CAPTIONS = 3
@@ -98,4 +101,5 @@ def name_cells(template: Template) -> list[tuple[int, int]]:
 def reference(place: Place, *, absolute: bool = False) -> str:
     """`Model!D12`, or `Model!$D$12`."""
     sheet, row = place
-    return f"{quote_sheetname(sheet)}!{xl_rowcol_to_cell(row, VALUE_COLUMN, row_abs=absolute, col_abs=absolute)}"
+    column = RECORD_VALUES if sheet == RECORD else VALUE_COLUMN
+    return f"{quote_sheetname(sheet)}!{xl_rowcol_to_cell(row, column, row_abs=absolute, col_abs=absolute)}"

@@ -20,6 +20,7 @@ _EXAMPLES: Final = (
     "intersection-momentum",
     "left-turn",
     "nearly-head-on",
+    "rest-positions",
     "skid-100-ft",
     "textbook-claim",
     "video-two-frames",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.stats import norm
 from simulated import simulated
 from typed_cells import model_of, named_cells, with_typed
 
@@ -108,3 +109,103 @@ def test_the_table_is_run_and_its_answers_wait_without_it(read):
     run = simulated(model_of(pasted(book, table)), 2_000)
     assert set(waiting) < set(run.forecasts)
     assert run.results["Vehicle speed at the impact"].standard_deviation.value > 0
+
+
+REPORT = (
+    "Times (sec)",
+    "Accelerator Pedal, % Full (%)",
+    "Service Brake (On, Off)",
+    "Engine RPM (Combined)",
+    "ABS Activity (Engaged, Non Engaged)",
+    "Speed, Vehicle Indicated ({units})",
+)
+
+
+def as_printed(table, units, written):
+    """The rows of `record` as a report prints them: other columns, other order, texts."""
+    rows = [(REPORT[0], *REPORT[1:-1], REPORT[-1].format(units=units))]
+    for time, speed, brake in table:
+        pressed = 0 if brake == "On" else 12.5
+        rows.append((f"{time:.2f} ".replace("-", "−"), pressed, brake, 1800, "Non Engaged", written(speed)))
+    return rows
+
+
+@pytest.mark.parametrize(
+    ("name", "units", "written"),
+    [
+        ("edr-speed", "MPH [km/h]", lambda v: f"{v:.4f} [{v * 1.609344:.4f}]"),
+        ("edr-speed-si", "MPH [km/h]", lambda v: f"{v / 1.609344:.6f} [{v:.6f}]"),
+        ("edr-speed-si", "km/h [mph]", lambda v: f"{v:.6f} [{v / 1.609344:.6f}]"),
+        ("edr-speed", "mph", lambda v: v),
+    ],
+)
+def test_the_table_of_a_report_is_read_as_it_is_printed(name, units, written, read):
+    per_second = dict(EDITIONS)[name]
+    _, plain = record(0.5, 11, -1.717, 28 * per_second, 6 * per_second, ("Off", "On"))
+    printed = as_printed(plain, units, written)
+    cells = {Cell("Record", FIRST_ROW - 1 + i, 1 + j): v for i, row in enumerate(printed) for j, v in enumerate(row)}
+    unit = "kmh" if name.endswith("-si") else "mph"
+    wanted = [f"vi_{unit}", "a_brake", "x_record", "t_braked", "t_released", "checks_hold"]
+    given = {"kappa": KAPPA, "bias": BIAS, "q": 0.0, "tau": 0.04}
+    found = shown(with_typed(read(name), cells | given), wanted)
+    alone = shown(pasted(read(name), plain, given), wanted)
+    assert found[:4] == pytest.approx(alone[:4], rel=1e-6)
+    released = max(time for time, _, brake in plain if brake == "Off")
+    assert found[4:] == [pytest.approx(0.04 - released), True]
+
+
+@pytest.mark.parametrize(
+    "spoilt",
+    [{(-1, 5): "Speed (km/h)"}, {(-1, 2): "Clutch"}, {(3, 5): "n/a"}, {(3, 0): "data not available"}],
+    ids=["another unit", "no brake", "no number", "no time"],
+)
+def test_a_table_that_cannot_be_read_is_said(spoilt, read):
+    _, plain = record(0.5, 11, -1.717, 50, 12, ("Off", "On"))
+    printed = as_printed(plain, "mph", lambda v: v)
+    cells = {Cell("Record", FIRST_ROW - 1 + i, 1 + j): v for i, row in enumerate(printed) for j, v in enumerate(row)}
+    assert shown(with_typed(read("edr-speed"), cells), ["check_table"]) == [True]
+    cells |= {Cell("Record", FIRST_ROW + row, 1 + column): value for (row, column), value in spoilt.items()}
+    assert shown(with_typed(read("edr-speed"), cells), ["check_table"]) == [False]
+
+
+@pytest.mark.parametrize(("name", "per_second"), EDITIONS)
+def test_speeds_at_further_events_follow_from_each_delta_v(name, per_second, read):
+    g = 9.80665 if name.endswith("-si") else 32.174
+    unit = "kmh" if name.endswith("-si") else "mph"
+    events = {"dv_1st": -4.0 * per_second, "t_2nd": 0.8, "f_2nd": 0.3, "dv_2nd": -9.0 * per_second, "t_3rd": 1.5}
+    given = events | {"g": g, "tau": 0.0, "f": 0.1, "q": 0.0, "kappa": 0.0, "v_last": 30 * per_second}
+    wanted = [f"vi_{unit}", f"v_2nd_{unit}", f"v_3rd_{unit}"]
+    first, second, third = shown(with_typed(read(name), given), wanted)
+    assert first == pytest.approx(30 * per_second)
+    assert second == pytest.approx((26 - 0.3 * g * 0.8) * per_second)
+    assert third == pytest.approx(second - 9 * per_second)
+    assert shown(read(name), wanted[1:]) == ["–", "–"]
+    run = simulated(model_of(with_typed(read(name), given)), 4_000)
+    waits = ["Vehicle speed at the second event", "Vehicle speed at the third event"]
+    assert set(waits) < set(run.forecasts)
+    drawn = run.prior["Recorded delta-V over the true one"]
+    assert (drawn.min(), drawn.max()) == (pytest.approx(0.9, abs=1e-3), pytest.approx(1.1, abs=1e-3))
+    assert not set(waits) & set(simulated(model_of(read(name)), 1_000).forecasts)
+
+
+def test_a_recorded_delta_v_is_evidence_of_the_speed(read):
+    """It keeps the trials whose speed gives it; cut off, those whose speed gives it or more."""
+    scene = {"w_own": 3500.0, "w_other": 4000.0, "v_other": 5.0}
+    book = with_typed(read("edr-speed"), scene)
+    (whole, cut) = (row for row in range(6, 12) if "delta-V" in str(book.sheets["Evidence"].cells.get((row, 1))))
+    free = simulated(model_of(with_typed(book, {Cell("Evidence", cut, 4): -100.0})), 20_000)
+    assert free.accepted == 20_000
+    speed, e = free["Vehicle speed at the impact"].values, free.inputs["Restitution, along one line"]
+    gives = (speed - 5) * (1 + e) / (1 + 3500 / 4000)
+    kept = simulated(model_of(with_typed(book, {Cell("Evidence", whole, 4): 22.0})), 20_000)
+    np.testing.assert_array_equal(
+        kept.trial_index, free.trial_index[(gives >= (22 - 0.31) / 1.1) & (gives <= (22 + 0.31) / 0.9)]
+    )
+    low = simulated(model_of(with_typed(book, {Cell("Evidence", cut, 4): 22.0})), 20_000)
+    np.testing.assert_array_equal(low.trial_index, free.trial_index[gives >= (22 - 0.31) / 1.1])
+    assert 0 < kept.accepted < low.accepted < free.accepted
+    blank = {Cell("Evidence", cut, column): None for column in (8, 9)}
+    soft = with_typed(book, {Cell("Evidence", cut, 4): 22.0, Cell("Evidence", cut, 7): 1.0} | blank)
+    tail = simulated(model_of(soft), 20_000, evidence="rejection")
+    chance = norm.cdf(gives - 22)
+    assert abs(tail.accepted - chance.sum()) < 4 * np.sqrt(np.sum(chance * (1 - chance)))

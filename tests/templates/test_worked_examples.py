@@ -346,7 +346,7 @@ def test_example_book_runs(name, book_path):
 
 
 def test_every_worked_example_is_a_book(builders):
-    assert set(builders["examples"].EXAMPLES) == {"intersection", "intersection-momentum", *BOOKS}
+    assert set(builders["examples"].EXAMPLES) == {"intersection", "intersection-momentum", "rest-positions", *BOOKS}
 
 
 # Mean and standard deviation before any filter, from 2e9 trials.

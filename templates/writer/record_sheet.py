@@ -1,4 +1,4 @@
-"""Sheet `Record`: the pre-crash table of a recorder, pasted as it is, and what is read from it."""
+"""Sheet `Record`: a table of a recorder or a video, pasted as it is, and what is read from it."""
 
 from __future__ import annotations
 
@@ -26,7 +26,10 @@ def draw_record(sheet: Worksheet, styles: Styles, template: Template, at: dict[s
     read = RECORD_VALUES - 1
     widths = [_PASTED] * table.width + [_COMPUTED] * len(table.computed)
     widths += [_BETWEEN] * (read - len(widths)) + [width for width, _ in _READ]
+    between = len(table.computed) + table.width
     begin_sheet(sheet, styles, template.title, table.subtitle, widths)
+    if between < read:
+        sheet.set_column(between, read - 1, _BETWEEN, None, {"hidden": True})
     sheet.set_row(HEADER_ROW, _TALL)
     for column in range(table.width):
         heading = table.columns[column] if column < len(table.columns) else ""

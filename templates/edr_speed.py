@@ -736,11 +736,19 @@ _GUIDE = (
             "Results wanted) keeps impossible pairs apart.",
             "Another tyre size or axle ratio than the factory's: multiply the recorded speeds (Nagel, Collision 3(2), "
             "2008). Older recorders of some makers sample asynchronously, up to a second off: widen τ.",
-            "A whole pre-crash table: paste times, speeds and brake on sheet Record, as the report prints them, up to "
-            "101 samples. It takes the place of the samples on sheet Inputs. One line of least squares through all "
-            "samples with slipping wheels gives the deceleration and the speed at the last one, with the error of "
-            "rounding that so many samples leave. Enter the interval between samples as High of τ. Of several events, "
-            "take the table of the one that is asked about.",
+            "A whole pre-crash table: paste it on sheet Record as the report prints it, with its headings, which say "
+            "which columns are time, speed and brake; speeds such as 45 [72] are read too; up to 101 samples. It takes "
+            "the place of the samples on sheet Inputs. One line of least squares through all samples with slipping "
+            "wheels gives the deceleration and the speed at the last one, with the error of rounding that so many "
+            "samples leave. Enter the interval between samples as High of τ.",
+            "Several events in one recording: the table belongs to the first trigger, and the speed at the impact is "
+            "that of the first event. Enter among the optional inputs its delta-V along the vehicle, with its sign, and "
+            "the time to the next event: the speeds at the second and the third follow. Make sure that the events are "
+            "of one crash and in the order in which they happened; reports may list the newest first.",
+            "The recorded delta-V says something of the speed only with both weights and a restitution. As evidence "
+            "(sheet Evidence) it is one row: with 10 % and a step of 1 km/h where the whole pulse was kept; as a lower "
+            "limit where the record ended before the pulse did, or the sensor reached the end of its range. Use it "
+            "there or among the optional inputs, not in both.",
         ),
     ),
     GuideSection(

@@ -163,7 +163,7 @@ _OPTIONAL = (
     Input("w_other", "w2", "Weight of the other vehicle", "[lb|kg]", None, "Optional. The same"),
     Input(
         "v_other",
-        "v2",
+        "vother",
         "Speed of what was struck, along this vehicle's way",
         "[mph|km/h]",
         None,
@@ -637,7 +637,7 @@ _GIVEN_DELTA_V = (
         "Delta-V along that the speed at the impact gives",
         "[mph|km/h]",
         f'IF(AND(w_own>0,w_other>0,e>-1),(v_impact_s*{MPH}-N(v_other))*(1+e)/(1+w_own/w_other),"–")',
-        "(vi − v2)·(1 + e)/(1 + m1/m2)",
+        "(vi − vother)·(1 + e)/(1 + m1/m2)",
         "Along one line. The delta-V that was recorded may be evidence of it: sheet Evidence.",
         number_format="0.00",
     ),
@@ -742,9 +742,9 @@ _GUIDE = (
             "wheels gives the deceleration and the speed at the last one, with the error of rounding that so many "
             "samples leave. Enter the interval between samples as High of τ.",
             "Several events in one recording: the table belongs to the first trigger, and the speed at the impact is "
-            "that of the first event. Enter among the optional inputs its delta-V along the vehicle, with its sign, and "
-            "the time to the next event: the speeds at the second and the third follow. Make sure that the events are "
-            "of one crash and in the order in which they happened; reports may list the newest first.",
+            "that of the first event. Enter among the optional inputs its delta-V along the vehicle, with its sign, "
+            "and the time to the next event: the speeds at the second and the third follow. Make sure that the events "
+            "are of one crash and in the order in which they happened.",
             "The recorded delta-V says something of the speed only with both weights and a restitution. As evidence "
             "(sheet Evidence) it is one row: with 10 % and a step of 1 km/h where the whole pulse was kept; as a lower "
             "limit where the record ended before the pulse did, or the sensor reached the end of its range. Use it "

@@ -237,7 +237,7 @@ _TABLE = PastedTable(
 _LINE = (
     Equation(
         "sd_mark",
-        "σx",
+        "sx",
         "Many frames: standard error of a mark",
         "",
         'IF(rec_used=1,IF(ISNUMBER(mark_error),mark_error,IF(rec_free>0,rec_sd*SQRT(rec_free/CHIINV(u_sd,rec_free)),0)),"–")',

@@ -209,10 +209,6 @@ _TIME, _SPEED, _BRAKE, _PEDAL, _SLIPS, _APART = map(_column, "KLMNOP")
 _FEW = 'IF(rec_slipped<3,"–",'
 
 
-def _last_off(word: str) -> str:
-    return f"IF(COUNTIFS({_BRAKE},{word})>0,MAXIFS({_TIME},{_BRAKE},{word}),MIN({_TIME})-1)"
-
-
 def _headed(symbol: str, name: str, *patterns: str, note: str = "") -> Equation:
     """The first column whose heading is like one of these, 0 if there is none."""
     formula = "0"
@@ -226,24 +222,29 @@ def _cell(column: str) -> str:
 
 
 def _number(column: str) -> str:
-    """The number in a cell, or the one its text begins with, as in "45 [72]"; no number gives an empty text."""
+    """The number in a cell, or the one its text begins with, as in "45 [72]"; no number gives a dash."""
     cell = _cell(column)
     plain = f'SUBSTITUTE(TRIM({cell}),"−","-")'
-    first = f'IFERROR(VALUE(LEFT({plain},FIND(" ",{plain}&" ")-1)),"")'
-    return f'IF({column}=0,"",IF(ISNUMBER({cell}),{cell},{first}))'
+    first = f'IFERROR(VALUE(LEFT({plain},FIND(" ",{plain}&" ")-1)),"–")'
+    return f'IF({column}=0,"–",IF(ISNUMBER({cell}),{cell},{first}))'
 
 
 _BRACKET = _cell("rec_c_speed")
+_SAID = f"LOWER(TRIM({_cell('rec_c_brake')}))"
 _COMPUTED = (
-    ("Time read, s", _number("rec_c_time"), "0.00"),
+    ("Time read, s", _number("rec_c_time"), "0.00;-0.00;0.00;"),
     (
         "Speed read, [mph|km/h]",
         f'IF(rec_bracket=1,IFERROR(VALUE(MID({_BRACKET},FIND("[",{_BRACKET})+1,'
-        f'FIND("]",{_BRACKET})-FIND("[",{_BRACKET})-1)),""),{_number("rec_c_speed")})',
-        "0.0",
+        f'FIND("]",{_BRACKET})-FIND("[",{_BRACKET})-1)),"–"),{_number("rec_c_speed")})',
+        "0.0;-0.0;0.0;",
     ),
-    ("Brake read", f'IF(rec_c_brake=0,"",IF({_cell("rec_c_brake")}="","",{_cell("rec_c_brake")}))', "General"),
-    ("Pedal read", _number("rec_c_pedal"), "0"),
+    (
+        "Brake read",
+        f'IF(OR(rec_c_brake=0,{_SAID}=""),"–",IF(OR({_SAID}="off",{_SAID}="no",{_SAID}="0"),0,1))',
+        "0;-0;0;",
+    ),
+    ("Pedal read", _number("rec_c_pedal"), "0;-0;0;"),
     ("Wheels slip", "IF(AND(ISNUMBER(rec_on),ISNUMBER(K{r}),ISNUMBER(L{r})),IF(K{r}>N(rec_on),1,0),0)", "0;-0;;@"),
     ("From mean time, s", "IF(AND(O{r}=1,ISNUMBER(rec_mid)),K{r}-rec_mid,0)", "0.00;-0.00;;@"),
 )
@@ -321,7 +322,7 @@ _TABLE = PastedTable(
             "",
             "Last time at which the brake was off, s",
             "s",
-            f"MAX({_last_off(chr(34) + 'Off' + chr(34))},{_last_off('0')})",
+            f"IF(COUNTIFS({_BRAKE},0)>0,MAXIFS({_TIME},{_BRAKE},0),MIN({_TIME})-1)",
             note="One second before the first sample where it was on in all",
             number_format="0.00",
         ),

@@ -187,8 +187,8 @@ _TABLE = PastedTable(
         ("Less the curve", "G{r}-rec_b1*E{r}-rec_b2*F{r}", "0.00;-0.00;;@"),
         (
             "Since the frame before",
-            'IF(AND(D{r}=1,B{r}>rec_first),B{r}-MAXIFS($B$6:$B$105,$D$6:$D$105,1,$B$6:$B$105,"<"&B{r}),"")',
-            "0.0000",
+            'IF(AND(D{r}=1,B{r}>rec_first),B{r}-MAXIFS($B$6:$B$105,$D$6:$D$105,1,$B$6:$B$105,"<"&B{r}),"–")',
+            "0.0000;-0.0000;0.0000;",
         ),
     ),
     subtitle="Enter many frames of one vehicle: the time stamp of each, as measured in the file, and where a point of "

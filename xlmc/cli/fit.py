@@ -54,6 +54,12 @@ _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm|xlsb?|ods))!(
     type=FilePath(),
     help="Write the row into the table xlmc_assumptions of this workbook: into the row of that name, or below all.",
 )
+@click.option(
+    "--tests",
+    type=OneOf("1", "2"),
+    help="SOURCE, a CSV file or a range, holds crash tests: copy them into the sheet Stiffness of --into, as tests of"
+    " vehicle 1 or 2.",
+)
 @study_options(STUDY)
 def fit(
     source: str,
@@ -63,6 +69,7 @@ def fit(
     name: str,
     distribution: str | None,
     into: Path | None,
+    tests: str | None,
     output: tuple[Path, ...],
     also: tuple[Path, ...],
     overwrite: bool,
@@ -81,6 +88,9 @@ def fit(
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files
 
+    if tests is not None:
+        _copy_tests(source, cells, int(tests), into, as_json=as_json)
+        return
     book, reference = _book_and_range(source, cells)
     name = label(name.strip())
     if into is not None and not name:
@@ -118,6 +128,26 @@ def fit(
         raise click.exceptions.Exit(NOT_WRITTEN)
     if found.n < fitting.FEW:
         raise click.exceptions.Exit(TOO_FEW)
+
+
+def _copy_tests(source: str, cells: str | None, vehicle: int, into: Path | None, *, as_json: bool) -> None:
+    """Copy crash tests, and say what stiffness they give."""
+    from xlmc.cli import fit_tests
+
+    if into is None:
+        raise click.UsageError("--tests needs --into, the workbook whose sheet Stiffness takes the tests.")
+    if cells is None and not _BOOK_AND_RANGE.fullmatch(source) and Path(source).suffix.lower() in (".csv", ".txt"):
+        copied = fit_tests.prepare(into, vehicle, Path(source), None)
+    else:
+        copied = fit_tests.prepare(into, vehicle, *_book_and_range(source, cells))
+    if written_or_reported(copied.path, partial(fit_tests.write, copied)) is None:
+        raise click.exceptions.Exit(NOT_WRITTEN)
+    if as_json:
+        say_json({"rows": [copied.first, copied.last], "gives": dict(copied.gives)})
+        return
+    say(f"Written: {copied.last - copied.first + 1} tests of vehicle {vehicle}, {into}, Stiffness!A{copied.first}")
+    for name, value in copied.gives.items():
+        say(f"  {name:<12} {value:.6g}")
 
 
 def _chosen(found: Fitting, distribution: str | None) -> Fitted:

@@ -35,7 +35,15 @@ from templates.description import (
 from templates.editions import Both
 from templates.guidance import CAVEATS, EXAMPLE_NUMBERS, FIRST_STEPS, READINGS, SIGNS
 from templates.speed_answer import speed_answer
-from templates.thrown_body import ANGLE_CHECK, EFFICIENCY_CHECK, THROWN, projection
+from templates.thrown_body import (
+    ANGLE_CHECK,
+    EFFICIENCY_CHECK,
+    MORE_OF_THROW,
+    ON_THE_WAY,
+    SHARED_MOMENTUM,
+    THROWN,
+    projection,
+)
 from templates.units import CONVERSIONS, GRAVITY, MPH
 
 __all__ = ["TEMPLATE"]
@@ -151,14 +159,16 @@ _SPEED = (
         "input",
         number_format="0",
     ),
+    *ON_THE_WAY,
+    SHARED_MOMENTUM,
     *projection("v_projected", "vp", "Projection speed of the body", where="throw_known=1"),
     Equation(
         "v_thrown",
         "vt",
         "Impact speed, from the throw",
         "[ft|m]/s",
-        "v_projected/efficiency",
-        "vp / η",
+        "v_projected/efficiency*(1+slowed)",
+        "vp / η · (1 + mb/mv)",
         "A vehicle is never slower than the body that it throws.",
     ),
     Equation("v_i", "vi", "Impact speed", "[ft|m]/s", "IF(known=2,v_thrown,v_marks)", "input"),
@@ -338,7 +348,7 @@ TEMPLATE = Template(
     needs="marks, throw distance, way walked, frictions",
     assumptions=_ASSUMPTIONS,
     constants=_CONSTANTS,
-    optional=(),
+    optional=MORE_OF_THROW,
     sections=(
         Section("1  Speed", _SPEED),
         Section("2  Time", _TIME),

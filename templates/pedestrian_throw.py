@@ -24,6 +24,9 @@ from templates.thrown_body import (
     ANGLE_CHECK,
     EFFICIENCY_CHECK,
     FRICTION_ROWS,
+    MORE_OF_THROW,
+    ON_THE_WAY,
+    SHARED_MOMENTUM,
     THROWN,
     projection,
 )
@@ -43,17 +46,54 @@ _ASSUMPTIONS = (
         number_format="0.0",
     ),
     *THROWN,
+    Input(
+        "z_fit",
+        "zfit",
+        "Regression: how far this case is off it, in residual standard deviations",
+        "",
+        0,
+        "Held until a regression is entered below. Residuals of a fit are taken as normal",
+        {"Mean": 0, "Std dev": 1},
+        "Normal",
+        "0.00",
+        frozen="=COUNT(fit_k,fit_p,fit_sd)<3",
+    ),
+)
+
+_REGRESSION = tuple(
+    Input(symbol, notation, f"Regression v = k·s^p + c: {name}", unit, None, source)
+    for symbol, notation, name, unit, source in (
+        (
+            "fit_k",
+            "k",
+            "k",
+            "",
+            "Optional, of a paper whose cases are like this one; speeds in [mph|km/h], s in [ft|m]. Name the paper, "
+            "its cases and its table",
+        ),
+        ("fit_p", "p", "p", "", "Optional. 0.5 where the speed goes with the root of the distance, 1 for a line"),
+        ("fit_c", "c", "c", "[mph|km/h]", "Optional. Blank: 0"),
+        (
+            "fit_sd",
+            "σfit",
+            "residual standard deviation",
+            "[mph|km/h]",
+            "Optional, and needed: without its scatter a regression says nothing of one case",
+        ),
+    )
 )
 
 _CONSTANTS = (GRAVITY, *CONVERSIONS)
 
 _STEPS = (
+    *ON_THE_WAY,
     Equation(
         "v_level",
         "vlevel",
         "Projection speed, level (θ = 0)",
         "[ft|m]/s",
-        "IF(s>=2*mu*H,SQRT(2*mu*g*(s-mu*H)),s*SQRT(g/(2*H)))",
+        "IF(s_thrown>=(2*mu+slope)*H,SQRT(2*mu_road*g*(s_thrown-mu*H)),"
+        "(s_thrown+slope*H)*SQRT(g/(2*H)/SQRT(1+slope^2)))",
         "Searle, with the fall H: √(2 μ g (s − μH)); stopped where it landed: s·√(g/(2·H))",
         "The greatest only of bodies that slide on, thrown at 0 to twice the best angle. Downward, or steeper, it was "
         "more: no upper limit.",
@@ -63,7 +103,7 @@ _STEPS = (
         "vmin",
         "Projection speed, lower bound",
         "[ft|m]/s",
-        "SQRT(2*mu*g*MAX(s-mu*H,0)/(1+mu^2))",
+        "SQRT(2*mu_road*g*MAX(s_thrown-mu*H,0)/(1+mu^2))",
         "Searle, with the fall H: the best angle, tan θ = μ",
         "No angle throws a body so far at a lower speed.",
     ),
@@ -81,6 +121,7 @@ _STEPS = (
 )
 
 _ANSWERS = (
+    SHARED_MOMENTUM,
     speed_answer("vmin", "vmin", "Projection speed, at least", "v_least"),
     speed_answer("vlevel", "vlevel", "Projection speed, if level", "v_level"),
     speed_answer("v", "v", "Projection speed at the angle given", "v_throw"),
@@ -89,9 +130,20 @@ _ANSWERS = (
         "V ([mph|km/h])",
         "«1» speed at the impact",
         "[mph|km/h]",
-        f"v_throw/efficiency*{MPH}",
-        "v/η",
+        f"v_throw/efficiency*(1+slowed)*{MPH}",
+        "v/η·(1 + mb/mv)",
         "A vehicle is never slower than the body that it throws.",
+        Role.ANSWER,
+        "0.00",
+    ),
+    Equation(
+        "v_fit_[mph|kmh]",
+        "vfit ([mph|km/h])",
+        "«1» speed by the regression entered",
+        "[mph|km/h]",
+        'IF(COUNT(fit_k,fit_p,fit_sd)=3,fit_k*s^fit_p+N(fit_c)+z_fit*fit_sd,"–")',
+        "k·s^p + c + z·σ",
+        "A dash: none is entered.",
         Role.ANSWER,
         "0.00",
     ),
@@ -102,7 +154,7 @@ _CHECKS = checks_section(
     check(
         "check_distance",
         "The body was thrown, and fell",
-        "AND(s>0,H>=0)",
+        "AND(s_thrown>0,H>=0,N(carried)>=0)",
         "geometry",
         "FALSE: a throw needs a distance; the fall is not negative.",
     ),
@@ -122,7 +174,11 @@ _SHARES = (*(f"{step**2}/64" for step in range(9)), "1.3", "1.6")
 
 def _against_distance(name: str, look: Look, divisor: str) -> Curve:
     return Curve(
-        name, look, tuple((f"{share}*s", f"SQRT(2*mu*g*MAX({share}*s-mu*H,0)){divisor}*{MPH}") for share in _SHARES)
+        name,
+        look,
+        tuple(
+            (f"{share}*s_thrown", f"SQRT(2*mu_road*g*MAX({share}*s_thrown-mu*H,0)){divisor}*{MPH}") for share in _SHARES
+        ),
     )
 
 
@@ -133,7 +189,7 @@ _DIAGRAM = Diagram(
     (
         _against_distance("Level (θ = 0)", Look.FIRST, ""),
         _against_distance("Lower bound", Look.SECOND, "/SQRT(1+mu^2)"),
-        Curve("This throw", Look.POINT, (("s", f"v_throw*{MPH}"),)),
+        Curve("This throw", Look.POINT, (("s_thrown", f"v_throw*{MPH}"),)),
     ),
     remark="Drawn from the cells below.",
 )
@@ -147,7 +203,7 @@ _GUIDE = (
         "When to use this model",
         (
             "A pedestrian or cyclist was struck by the front of a vehicle, projected forward, and slid to rest on "
-            "level ground of one surface (J. and A. Searle, The Trajectories of Pedestrians, Motorcycles, "
+            "ground of one surface and grade (J. and A. Searle, The Trajectories of Pedestrians, Motorcycles, "
             "Motorcyclists, etc., SAE 831622).",
             "The lower bound needs no angle: no angle throws a body so far at a lower speed. Quote it where the angle "
             "is not known. There is no upper bound without a range of angles: the speed if level is the greatest only "
@@ -161,8 +217,14 @@ _GUIDE = (
             "The throw distance is the whole one along the ground, flight and slide together.",
             "The vehicle's speed is at least the projection speed. How much more depends on the kind of throw: about "
             "equal for a high front that pushes the body forward, more for a body that is lifted over the bonnet.",
-            "Not for a body carried on the vehicle, thrown over the roof, struck by the corner of the vehicle, or "
-            "stopped by an obstacle before it came to rest by sliding.",
+            "A rider who leaves a motorcycle that stops against a car is thrown as well: H is the fall from the seat "
+            "to the road, η the share of the motorcycle's speed with which he left it, and the answer is the speed "
+            "of the motorcycle.",
+            "A regression of tests or cases (speed against throw distance) stands beside it once its constants and "
+            "its residual scatter are entered among the optional inputs. None is filled in: take one from a paper "
+            "whose cases had this kind of throw, front and body, and whose scatter it states.",
+            "Not for a body carried on the vehicle to rest, thrown over the roof, struck by the corner of the "
+            "vehicle, or stopped by an obstacle before it came to rest by sliding.",
             "Beside it: skid, for a vehicle that braked to rest from the impact.",
         ),
     ),
@@ -192,7 +254,7 @@ TEMPLATE = Template(
     needs="throw distance, fall and friction of the body",
     assumptions=_ASSUMPTIONS,
     constants=_CONSTANTS,
-    optional=(),
+    optional=(*MORE_OF_THROW, *_REGRESSION),
     sections=(
         Section("1  Projection speed", _STEPS),
         Section("2  Answers (the forecasts)", _ANSWERS),
@@ -203,6 +265,7 @@ TEMPLATE = Template(
         ForecastRow("Projection speed, if level", "vlevel_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("Projection speed at the angle", "v_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» speed", "V_vehicle_[mph|kmh]", "[mph|km/h]"),
+        ForecastRow("«1» speed by the regression entered", "v_fit_[mph|kmh]", "[mph|km/h]"),
     ),
     filters=(
         FilterRow(

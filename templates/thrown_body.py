@@ -3,7 +3,8 @@
 With the fall H of its centre of gravity, s = (v·cos θ + μ·v·sin θ)²/(2·μ·g) + μ·H: the flight, then a landing at which
 friction takes μ times the vertical speed from the speed along the ground, then the slide (Searle, SAE 831622). It holds
 where the body slides on after it lands. A body that stops where it lands comes less far than that equation says: it was
-faster, and its flight alone gives its speed.
+faster, and its flight alone gives its speed. On a grade G the same follows with μ·g replaced by (μ + G)·g/√(1 + G²),
+angles and distances taken along the road: flight, landing and slide lose speed to it at one rate.
 """
 
 from __future__ import annotations
@@ -12,7 +13,16 @@ from templates.checks import check
 from templates.description import Equation, Input
 from templates.editions import Both
 
-__all__ = ["ANGLE_CHECK", "EFFICIENCY_CHECK", "FRICTION_ROWS", "THROWN", "projection"]
+__all__ = [
+    "ANGLE_CHECK",
+    "EFFICIENCY_CHECK",
+    "FRICTION_ROWS",
+    "MORE_OF_THROW",
+    "ON_THE_WAY",
+    "SHARED_MOMENTUM",
+    "THROWN",
+    "projection",
+]
 
 THROWN = (
     Input(
@@ -63,13 +73,78 @@ THROWN = (
 )
 """Friction on the ground, fall, angle of projection, and projection speed over that of the vehicle."""
 
-_COSINE, _SINE = "COS(RADIANS(angle))", "SIN(RADIANS(angle))"
-_SLIDES = f"IF(s>mu*H,SQRT(2*mu*g*(s-mu*H))/({_COSINE}+mu*{_SINE}),0)"
-_STOPS = f"s*SQRT(g/(2*(H+s*TAN(RADIANS(angle)))))/{_COSINE}"
+MORE_OF_THROW = (
+    Input(
+        "grade",
+        "",
+        "Grade of the road on which the body slid",
+        "%",
+        None,
+        "Optional. Uphill along the throw positive. Blank: level",
+    ),
+    Input(
+        "carried",
+        "sc",
+        "Way on the vehicle, from the impact to the projection",
+        "[ft|m]",
+        None,
+        "Optional; it is part of the throw distance. Blank: none",
+    ),
+    Input(
+        "w_body",
+        "wb",
+        "[Weight|Mass] of the body",
+        "[lb|kg]",
+        None,
+        "Optional. With that of the vehicle: how much the body slowed it. Blank: not at all",
+    ),
+    Input("w_vehicle", "wv", "[Weight|Mass] of «1»", "[lb|kg]", None, "Optional. The same"),
+)
+"""Inputs that may stay blank: grade, way on the vehicle, and both weights."""
+
+ON_THE_WAY = (
+    Equation("slope", "G", "Grade", "", "N(grade)/100", "input", number_format="0.000"),
+    Equation(
+        "s_thrown",
+        "sthr",
+        "Way from the projection to rest",
+        "[ft|m]",
+        "s-N(carried)",
+        "s − sc",
+        number_format="0.00",
+    ),
+    Equation(
+        "mu_road",
+        "μG",
+        "Friction and grade together",
+        "",
+        "(mu+slope)/SQRT(1+slope^2)",
+        "(μ + G)/√(1 + G²)",
+        "On level ground μ.",
+        number_format="0.000",
+    ),
+)
+"""What the throw is measured by; `projection` and bounds use it."""
+
+SHARED_MOMENTUM = Equation(
+    "slowed",
+    "mb/mv",
+    "Share of its speed that the vehicle gave to the body",
+    "",
+    "IF(AND(N(w_body)>0,N(w_vehicle)>0),w_body/w_vehicle,0)",
+    "momentum",
+    "η is the body's speed over that of the vehicle after the impact; before it the vehicle had this share more.",
+    number_format="0.0000",
+)
+
+_COSINE, _SINE, _TANGENT = (f"{of}(RADIANS(angle))" for of in ("COS", "SIN", "TAN"))
+_SLIDES = f"IF(s_thrown>mu*H,SQRT(2*mu_road*g*(s_thrown-mu*H))/({_COSINE}+mu*{_SINE}),0)"
+_STOPS = f"(s_thrown+slope*H)*SQRT(g/(2*(H+s_thrown*{_TANGENT})*(1-slope*{_TANGENT}))/SQRT(1+slope^2))/{_COSINE}"
+_LANDING = f"SQRT((v_slide*{_SINE})^2+2*g*H/SQRT(1+slope^2))"
 
 
 def projection(symbol: str, notation: str, name: str, where: str = "") -> tuple[Equation, ...]:
-    """Steps to the speed `symbol` at which a body of the inputs `THROWN` leaves, to come to rest after `s`.
+    """Steps to the speed `symbol` at which a body of the inputs `THROWN` leaves, to come to rest after `s_thrown`.
 
     Args:
         symbol: of the speed.
@@ -85,7 +160,7 @@ def projection(symbol: str, notation: str, name: str, where: str = "") -> tuple[
             "Projection speed, if the body slides on after it lands",
             "[ft|m]/s",
             _SLIDES,
-            "Searle, SAE 831622, with the fall H: √(2 μ g (s − μH))/(cos θ + μ sin θ)",
+            "Searle, SAE 831622, with the fall H: √(2 μ g (s − μH))/(cos θ + μ sin θ); μG on a grade",
             "Flight, landing and slide with one μ; s is the whole distance.",
         ),
         Equation(
@@ -93,9 +168,10 @@ def projection(symbol: str, notation: str, name: str, where: str = "") -> tuple[
             "ul",
             "Speed along the ground after landing",
             "[ft|m]/s",
-            f"v_slide*{_COSINE}-mu*SQRT((v_slide*{_SINE})^2+2*g*H)",
+            f"v_slide*{_COSINE}-slope*(v_slide*{_SINE}+{_LANDING})-mu*{_LANDING}",
             "v·cos θ − μ·√(v²·sin² θ + 2·g·H)",
-            "Friction acts on the landing blow too. Below 0: it stopped where it landed, after a flight only.",
+            "Friction acts on the landing blow too, and the grade on the flight. Below 0: it stopped where it landed, "
+            "after a flight only.",
         ),
         Equation(
             symbol,

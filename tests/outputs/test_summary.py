@@ -240,9 +240,11 @@ def test_numbers_far_from_0_keep_the_digits_that_tell_them_apart(make):
         ("=A1*0", Kind.NUMBER),
         ("=MAX(0,A1-1000)", Kind.NUMBER),
         ("=IF(A1>1000,5,0)", Kind.NUMBER),
+        ("=C1*3600", Kind.NUMBER),
+        ("=IF(C1=2,A1,C1*3600)", Kind.NUMBER),
     ],
 )
 def test_a_number_that_happens_to_be_0_in_all_trials_is_no_answer_by_yes_or_no(make, formula, expected):
-    cells = {"A1": 0.5, "B1": formula}
+    cells = {"A1": 0.5, "B1": formula, "C1": 0.0}
     run = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0)], [make.forecast("x", "B1")], trials=50)
     assert run["x"].kind is expected

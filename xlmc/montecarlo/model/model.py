@@ -546,8 +546,13 @@ class CompiledModel:
         return frozenset(each.name for each, target in targets if self._is_two_valued(self.lowering.target(target)))
 
     def _is_two_valued(self, node: int) -> bool:
-        """Return whether a node, or what `IF` chooses there from, is a logical, or a constant 1 or 0."""
+        """Return whether a node is a logical, or what `IF` chooses there from are logicals and constants 1 and 0.
+
+        A number that is known before the run, such as a speed that is held at 0, is neither.
+        """
         dag, seen, waiting = self.lowering.dag, set[int](), [node]
+        if isinstance(dag.nodes[node], Constant) and dag.types[node] is Kind.NUMBER:
+            return False
         while waiting:
             at = waiting.pop()
             found = dag.nodes[at]

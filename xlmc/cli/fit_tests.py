@@ -71,12 +71,12 @@ def prepare(path: Path, vehicle: int, source: Path, reference: str | None) -> Co
     from xlmc.excel.workbook.injection.cell_edit import with_contents
     from xlmc.excel.workbook.package_check import checked_bytes
     from xlmc.excel.workbook.reader import read_workbook
-    from xlmc.excel.workbook.target import refuse_into_old_workbook
+    from xlmc.excel.workbook.target import refuse_into_other_format
     from xlmc.excel.workbook.writer import refuse_if_open
 
     refuse_if_open(path)
     workbook = read_workbook(path)
-    refuse_into_old_workbook(path)
+    refuse_into_other_format(path)
     headings, *tests = _rows(source, reference)
     contents = _contents(workbook, vehicle, source, headings, tests)
     sheet = workbook.sheets[SHEET]

@@ -6,9 +6,11 @@ import json
 import shlex
 from pathlib import Path
 
+import openpyxl
 import pytest
 from committed_books import BOOKS
 from fewer_sheets import SHORT, keep_few_trials, keep_sheets
+from openpyxl.worksheet.table import Table
 
 import xlmc as library
 from xlmc.errors import WorkbookError
@@ -146,3 +148,36 @@ def test_a_page_never_replaces_the_workbook_of_the_run_beside_it(tmp_path):
     (tmp_path / "page.html").hardlink_to(tmp_path / "intersection-momentum.xlsx")
     with pytest.raises(WorkbookError, match="This is the file that is read"):
         first.simulate(500).save_page(tmp_path / "page.html", beside=second.simulate(500), overwrite=True)
+
+
+def small_book(path, name):
+    """A workbook whose answer is its one assumption, plus 1."""
+    book = openpyxl.Workbook()
+    for row in (("Name", "Value", "Low", "High", "", "Name", "Cell"), (name, 1, 0, 2, "", "Out", "=A4")):
+        book.active.append(row)
+    book.active["A4"] = "=B2+1"
+    book.active.add_table(Table(displayName="xlmc_assumptions", ref="A1:D2"))
+    book.active.add_table(Table(displayName="xlmc_forecasts", ref="F1:G2"))
+    book.save(path)
+
+
+CIRCLES = {
+    "two": (["a.xlsx!p=b.xlsx!Out", "B.xlsx!q=a.xlsx!Out"], "a.xlsx → b.xlsx → a.xlsx"),
+    "one": (["a.xlsx!p=a.xlsx!Out"], "a.xlsx → a.xlsx"),
+    "three": (
+        ["a.xlsx!p=b.xlsx!Out", "b.xlsx!q=c.xlsx!Out", "c.xlsx!r=a.xlsx!Out"],
+        "a.xlsx → c.xlsx → b.xlsx → a.xlsx",
+    ),
+}
+
+
+@pytest.mark.parametrize(("feeds", "circle"), CIRCLES.values(), ids=CIRCLES)
+def test_books_that_feed_each_other_in_a_circle_are_named(xlmc, tmp_path, feeds, circle):
+    """No word of Excel's iterative calculation: the circle is one of books."""
+    for path, name in (("run", "x"), ("a", "p"), ("b", "q"), ("c", "r")):
+        small_book(tmp_path / f"{path}.xlsx", name)
+    typed = [part for feed in ("x=a.xlsx!Out", *feeds) for part in ("--feed", feed)]
+    done = xlmc("simulate", "run.xlsx", *typed)
+    assert (done.code, done.err.count("\n")) == (2, 1), done.err
+    assert f"The workbooks feed each other in a circle: {circle}. Leave out one of the feeds" in done.err
+    assert "iterative" not in done.err

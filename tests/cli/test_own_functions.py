@@ -197,6 +197,28 @@ def test_the_file_is_never_replaced(book, tmp_path):
         run.save_json(tmp_path / "link.json", overwrite=True)
 
 
+STUDIES = {
+    "seek": ("--cell", "Model!B2", "--to", 50, "--by", "Model!B1"),
+    "stability": ("-n", 200),
+    "screen": ("-n", 200),
+    "methods": ("-n", 2_000),
+    "verify": (),
+    "decide": (),
+    "uncertainty": (),
+    "compare": ("beam.xlsx",),
+    "calculate": ("--cells", "Model!B2"),
+}
+
+
+@pytest.mark.parametrize(("command", "more"), STUDIES.items(), ids=STUDIES)
+def test_no_study_replaces_the_file(xlmc, book, tmp_path, command, more):
+    book()
+    (tmp_path / "link.json").hardlink_to(tmp_path / "my_functions.py")
+    refused = xlmc(command, "beam.xlsx", *more, "--functions", "my_functions.py", "-o", "link.json", "--overwrite")
+    assert (refused.code, refused.err) == (2, "xlmc: link.json: This is the file that is read. Name another file.\n")
+    assert (tmp_path / "my_functions.py").read_text(encoding="utf-8") == FUNCTIONS
+
+
 def test_a_body_goes_to_another_process_without_the_file(tmp_path):
     functions = load_functions(written(tmp_path / "gone.py", FUNCTIONS))
     packed = pickle.dumps(functions)

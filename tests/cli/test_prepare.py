@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import zipfile
 from pathlib import Path
 
@@ -63,11 +64,11 @@ def book(tmp_path):
     return write(MODEL, tmp_path / "beam.xlsx")
 
 
-def edit(path, cells):
-    """Type into the sheet of tables, as a person would."""
+def edit(path, cells, sheet="xlmc"):
+    """Type into a sheet, by default that of the tables, as a person would."""
     book = openpyxl.load_workbook(path)
     for place, value in cells.items():
-        book["xlmc"][place] = value
+        book[sheet][place] = value
     book.save(path)
 
 
@@ -97,6 +98,68 @@ def test_years_above_a_table_are_no_inputs(xlmc, tmp_path):
     assert "Plan!B3" in outcome.out
     assert "Plan!B2" in outcome.out
     assert "Plan!B1" not in outcome.out
+
+
+ORDER = {
+    "Out": [["Last", "=In!B2*2"], ["First", "=In!B1+1"]],
+    "In": [["a", 1], ["b", 2], ["Late", "=B1*3", "=B2*4"], ["Later", "=B1-B2"]],
+}
+
+
+def forecasts_of(outcome):
+    return list(dict.fromkeys(re.findall(r"(?:Out|In)![A-Z]\d", outcome.out.split("Forecasts")[1])))
+
+
+def test_answers_stand_in_the_order_of_the_sheets_or_as_they_are_asked_for(xlmc, tmp_path):
+    made = write(ORDER, tmp_path / "order.xlsx")
+    assert forecasts_of(xlmc("prepare", made)) == ["Out!B1", "Out!B2", "In!B3", "In!C3", "In!B4"]
+    asked = ("--forecast", "In!B4", "--forecast", "Out!B1:B2", "--forecast", "In!B4")
+    assert forecasts_of(xlmc("prepare", made, *asked, "-o", "asked.xlsx")) == ["In!B4", "Out!B1", "Out!B2"]
+    done = xlmc("simulate", "order-prepared.xlsx", "-n", 100, "-o", "run.json")
+    assert done.code == 0, done.err
+    names = [each["cell"] for each in json.loads(Path("run.json").read_text(encoding="utf-8"))["forecasts"]]
+    assert names == ["Out!B1", "Out!B2", "In!B3", "In!C3", "In!B4"]
+
+
+def test_code_of_vba_points_to_the_option_and_is_computed_with_it(xlmc, tmp_path):
+    rows = {"Pump": [["Flow", 0.04, "m3/s"], ["Head", 20, "m"], ["Power", "=Power.Of(B1,B2)", "kW"]]}
+    made = write(rows, tmp_path / "pump.xlsx")
+    (tmp_path / "mine.py").write_text("def Power_Of(flow, head):\n    return 9.81 * flow * head / 0.7\n", "utf-8")
+    alone = xlmc("prepare", made)
+    assert "the function POWER.OF is not known to xlmc" in alone.err
+    assert "--functions my_functions.py" in alone.err
+    assert "name an answer" not in alone.err
+    outcome = xlmc("prepare", made, "--functions", "mine.py", "--overwrite")
+    assert "Pump!B3" in outcome.out.split("Forecasts")[1]
+    assert "--functions mine.py" in outcome.out
+    (tmp_path / "link.xlsx").hardlink_to(tmp_path / "mine.py")
+    refused = xlmc("prepare", made, "--functions", "mine.py", "--overwrite", "-o", "link.xlsx")
+    assert "This is the file that is read" in refused.err
+
+
+def test_years_that_a_table_repeats_are_no_answers(xlmc, tmp_path):
+    rows = [
+        ["Emissions", 2013, 2014, 2015],
+        ["Power", 1150, "=B2*0.98", "=C2*0.98"],
+        ["Price", 2013, 2014, 2015],
+        ["Allowance", 25, "=B4*1.05", "=C4*1.05"],
+    ]
+    made = write({"Plan": rows}, tmp_path / "plan.xlsx")
+    edit(made, {f"{column}3": f"={column}1" for column in "BCD"}, "Plan")
+    xlmc("calculate", made, "-o", "saved.xlsx")  # Excel saves values
+    outcome = xlmc("prepare", "saved.xlsx")
+    assert outcome.code == 0, outcome.err
+    assert "Power, 2013" in outcome.out
+    assert "Allowance, 2015" in outcome.out
+    assert not re.search(r"Plan![BCD][13]\b", outcome.out)
+
+
+def test_a_poisson_distribution_takes_its_rate_as_mean(xlmc, book):
+    xlmc("prepare", book)
+    edit("beam-prepared.xlsx", {"C7": "Poisson", "G7": 3})
+    outcome = xlmc("check", "beam-prepared.xlsx")
+    assert outcome.code == 0, outcome.err
+    assert "Poisson: Rate 3" in outcome.out
 
 
 def test_a_row_is_frozen_until_a_distribution_is_typed(xlmc, book):

@@ -86,7 +86,8 @@ def calculate(
     table = None if values is None else read_value_rows(values, workbook)
     if not outputs and not cells:
         outputs = (book.with_name(f"{book.stem}-calculated{copy_ending(book)}"),)
-    _check(outputs, book, values, wanted, 1 if table is None else len(table.rows), overwrite)
+    read = [book, *([] if values is None else [values]), *([] if functions is None else [functions.path])]
+    _check(outputs, read, values, wanted, 1 if table is None else len(table.rows), overwrite)
     rows = [typed] if table is None else [{**typed, **row} for row in table.rows]
     calculator = Calculator(workbook, {*typed, *(() if table is None else table.rows[0])}, volatile=volatile)
     copies = any(path.suffix.casefold() not in _TABLES for path in outputs)
@@ -94,7 +95,7 @@ def calculate(
     found = [calculator.calculate(row, only) for row in rows]
     answers = _Answers(workbook, wanted, table, rows, found)
     for path in outputs:
-        _write(path, answers, book, overwrite)
+        _write(path, answers, read, overwrite)
     _print(answers, as_json=as_json, as_csv=as_csv)
     _tell(answers, book, outputs)
     if any(answers.lacking()):
@@ -178,14 +179,19 @@ def _wanted(book: Workbook, places: Iterable[str]) -> list[Cell]:
 
 
 def _check(
-    outputs: Sequence[Path], book: Path, values: Path | None, wanted: Sequence[Cell], rows: int, overwrite: bool
+    outputs: Sequence[Path],
+    read: Sequence[Path],
+    values: Path | None,
+    wanted: Sequence[Cell],
+    rows: int,
+    overwrite: bool,
 ) -> None:
-    """Refuse, before anything is computed, what could not be written."""
+    """Refuse, before anything is computed, what could not be written; `read` are the files read, BOOK first."""
     from xlmc.errors import WorkbookError
     from xlmc.excel.workbook.target import Target, copy_ending, refuse_folder, refuse_same_file
 
     refuse_same_file(outputs)
-    read = [book, *([] if values is None else [values])]
+    book = read[0]
     for path in outputs:
         refuse_folder(path)
         ending = path.suffix.casefold()
@@ -202,7 +208,7 @@ def _check(
         raise click.UsageError("which cells are to be shown for each row? Name them: --cells Results!B2:B9")
 
 
-def _write(path: Path, answers: _Answers, book: Path, overwrite: bool) -> None:
+def _write(path: Path, answers: _Answers, read: Sequence[Path], overwrite: bool) -> None:
     import json
 
     from xlmc.excel.workbook.calculated_copy import copy_with_values
@@ -217,7 +223,7 @@ def _write(path: Path, answers: _Answers, book: Path, overwrite: bool) -> None:
         case _:
             (found,), (typed,) = answers.found, answers.typed
             data = copy_with_values(answers.book, typed, found.values, found.unknown)
-    write_workbook(path, data, Target(path, "", overwrite, read=[book]).check)
+    write_workbook(path, data, Target(path, "", overwrite, read=read).check)
 
 
 def _print(answers: _Answers, *, as_json: bool, as_csv: bool) -> None:

@@ -83,7 +83,7 @@ def compare(
     from xlmc.outputs.study_report import Files
 
     books = load(first, functions=functions), load(second, functions=functions)
-    files = Files((*output, *also), [first, second], overwrite=overwrite)
+    files = Files((*output, *also), [first, second], overwrite=overwrite, functions=functions)
     files.check()
     with step_line(quiet) as tell:
         found = comparison.compare(

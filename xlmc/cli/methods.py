@@ -70,7 +70,7 @@ def methods(
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
-    files = Files((*output, *also), [book], overwrite=overwrite, drawn=True)
+    files = Files((*output, *also), [book], overwrite=overwrite, functions=functions, drawn=True)
     files.check()
     asked: dict[str, Any] = {"reference_trials": reference_trials, "trials": trials, "replicates": replicates}
     given = {name: value for name, value in asked.items() if value is not None}

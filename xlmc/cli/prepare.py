@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from xlmc.cli.options import FilePath
+from xlmc.cli.options import FilePath, functions_option
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
     from xlmc.excel.address import Area
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.outputs.prepared.prepare import Prepared
 
@@ -28,6 +29,7 @@ _MOST_TOLD: Final = 40
 @click.option("-o", "--output", type=FilePath(), help="The copy.  [default: BOOK-prepared.xlsx]")
 @click.option("--in-place", is_flag=True, help="Add the tables to BOOK itself.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
+@functions_option
 def prepare_book(
     book: Path,
     assumptions: tuple[str, ...],
@@ -35,6 +37,7 @@ def prepare_book(
     output: Path | None,
     in_place: bool,
     overwrite: bool,
+    functions: OwnFunctions | None,
 ) -> None:
     """Add a sheet with xlmc's tables to a copy of BOOK, with the inputs and answers that its formulas have.
 
@@ -57,13 +60,14 @@ def prepare_book(
         raise click.UsageError("--in-place and --output cannot both be given.")
     if in_place:
         refuse_if_open(book)
-    workbook = read_workbook(book)
+    workbook = read_workbook(book, functions=functions)
+    read = [book, *([] if functions is None else [functions.path])]
     target = book if in_place else output or book.with_name(f"{book.stem}-prepared{copy_ending(book)}")
     check_ending(target, book)
     if in_place:
         refuse_into_other_format(book)
     else:
-        Target(target, "", overwrite, read=[book]).check()
+        Target(target, "", overwrite, read=read).check()
     found = prepared(book, _areas(workbook, assumptions), _areas(workbook, forecasts), workbook)
     _show(found)
     if not found.is_new:
@@ -74,16 +78,18 @@ def prepare_book(
         if in_place and is_same_file(target, book):
             refuse_into_source(target, workbook.sha256, "Try again")
         else:
-            Target(target, "", overwrite, read=[book]).check()
+            Target(target, "", overwrite, read=read).check()
 
     write_workbook(target, found.data, check)
+    given = "" if functions is None else f" --functions {functions.path}"
     where = f"its last sheet, {found.sheet!r}," if found.sheet else "its tables"
     say(
         paragraph(
             f"{target} is written. Open it, and on {where} choose a Distribution for what is uncertain, and type its "
-            f"numbers; delete rows that are of no interest. Then run: xlmc simulate {target}"
+            f"numbers; delete rows that are of no interest. Then run:"
         )
     )
+    say(f"  xlmc simulate {target}{given}")  # in one line, to be copied
 
 
 def _areas(book: Workbook, places: Sequence[str]) -> list[Area] | None:
@@ -120,6 +126,6 @@ def _show(found: Prepared) -> None:
         say(f"note: {cell} {why}, and has no row.", err=True)
     if not found.found.assumptions and not found.found.forecasts and found.sheet:
         say("note: no formula uses a number that is typed into a cell: the tables are empty.", err=True)
-    elif not found.found.forecasts and found.sheet:
+    elif not found.found.forecasts and found.sheet and not found.found.passed_over:
         message = "no formula that gives a number depends on these cells: name an answer with --forecast Sheet!Cell"
         say(f"note: {message}.", err=True)

@@ -93,7 +93,7 @@ def screen(
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
-    files = Files((*output, *also), [book], overwrite=overwrite, of_run=True)
+    files = Files((*output, *also), [book], overwrite=overwrite, functions=functions, of_run=True)
     files.check()
     with step_line(quiet) as tell:
         found = screening.screen(

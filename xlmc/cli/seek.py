@@ -50,7 +50,7 @@ def seek(
     from xlmc.analysis.studies import seek as study
     from xlmc.outputs.study_report import Files
 
-    files = Files((*output, *also), [book], overwrite=overwrite)
+    files = Files((*output, *also), [book], overwrite=overwrite, functions=functions)
     files.check()
     found = study.seek(book, cell, to, by, low=low, high=high, functions=functions)
     report = _report(found)

@@ -79,7 +79,7 @@ def uncertainty(
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
-    files = Files((*output, *also), [book], overwrite=overwrite)
+    files = Files((*output, *also), [book], overwrite=overwrite, functions=functions)
     files.check()
     with step_line(quiet) as tell:
         found = study.uncertainty(

@@ -52,7 +52,7 @@ def verify(
     definitions = None if everything else read_definitions(calculate_labels(workbook), ENGINES)
     if definitions is not None and not definitions.forecasts and not definitions.filters:
         raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")
-    files = Files((*output, *also), [book], overwrite=overwrite)
+    files = Files((*output, *also), [book], overwrite=overwrite, functions=functions)
     files.check()
     found = check(workbook, definitions)
     cells = "every formula cell" if everything else "the formula cells that forecasts and filters need"

@@ -19,6 +19,7 @@ from xlmc.outputs.sheets.page import Page
 from xlmc.outputs.sheets.styles import CREATED, Styles
 
 if TYPE_CHECKING:
+    from xlmc.excel.own_functions import OwnFunctions
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.exact_book import ExactBook
 
@@ -67,6 +68,7 @@ class Files:
         overwrite: replace files that are not ours, too.
         of_run: the study has a run, whose trials can be written, and which can be saved.
         drawn: the study has a figure, which matplotlib draws.
+        functions: a person's own, whose file is never written to either.
     """
 
     def __init__(
@@ -77,7 +79,9 @@ class Files:
         overwrite: bool,
         of_run: bool = False,
         drawn: bool = False,
+        functions: OwnFunctions | None = None,
     ) -> None:
+        self._read = (*sources, *(() if functions is None else (functions.path,)))
         self._paths, self._sources, self._overwrite, self._drawn = paths, sources, overwrite, drawn
         self._endings = (*([_PICTURE] if drawn else []), *_ENDINGS, *(_OF_RUN if of_run else ()))
 
@@ -111,7 +115,7 @@ class Files:
                 raise WorkbookError("drawing needs matplotlib, which is not installed", where=path, hint=hint)
 
     def _target(self, path: Path) -> Target:
-        return Target(path, self._sources[0].name, self._overwrite, read=self._sources)
+        return Target(path, self._sources[0].name, self._overwrite, read=self._read)
 
     def writers(self, report: StudyReport) -> Iterator[tuple[Path, Callable[[], Path]]]:
         """Each file with what writes it; an untouched file of ours is replaced.

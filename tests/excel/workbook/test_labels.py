@@ -13,10 +13,20 @@ SUMMARY = {"B9": "MONTHLY EXPENSES", "E8": "Income", "F8": "Expenses", "G8": "Ba
 COLUMNS = {"H4": "Total", "H5": "Gain", "H6": "(Per Year)", "H7": "€", "H8": 815.84, "I7": "%", "I8": 4.9, "H9": 400}
 BESIDE = {"A1": "Name", "D1": "Value", "A2": "Load", "D2": 12, "D3": 4, "A3": "Span", "E3": "m"}
 
+YEARS = {"D2": 2013, "E2": 2014, "F2": 2015, "B3": "Power", "D3": 1.5, "E3": 2.5, "F3": 3.5, "A6": 2013, "A7": 2014}
+PARTNERS = {"B3": "Partner", "C3": "Quantity", "D3": "Amount", "B4": "a", "C4": 2, "D4": 123}
+NOTED = {"A1": "Name", "B1": "Value", "C1": "Note", "A2": "Load", "B2": 12, "C2": "as built"}
+
 
 @pytest.mark.parametrize(
     ("cells", "cell", "name", "unit"),
     [
+        (YEARS, "D3", "Power, 2013", ""),
+        (YEARS, "F3", "Power, 2015", ""),
+        (YEARS | {"B5": "Demand", "B6": 4}, "B6", "2013", ""),
+        (PARTNERS, "C4", "a, Quantity", ""),
+        (PARTNERS, "D4", "a, Amount", ""),
+        (NOTED, "B2", "Load", ""),
         (SUMMARY, "E9", "Income", ""),
         (SUMMARY, "F9", "Expenses", ""),
         (SUMMARY, "G9", "Balance", ""),

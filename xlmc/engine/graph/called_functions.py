@@ -141,7 +141,8 @@ def _hint(name: str, own: tuple[str, ...]) -> str:
     """Say what to do about an unknown function. A workbook of another program calls each many times, and may have the
     rest computed: to look through all names takes longer than that.
     """
-    known = {each.upper(): each for each in own} | {key: key for key in REGISTRY if key[0].isalpha()}
+    known = {each.upper(): each for each in own}
+    known |= {key: key for key in REGISTRY if key[0].isalpha() and ("." in key or "." not in name)}
     close = get_close_matches(name, known, n=1, cutoff=_CLOSE)
     return f"did you mean {known[close[0]]}?" if close else f"check its spelling; {_GIVE}"
 

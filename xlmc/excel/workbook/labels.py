@@ -6,11 +6,12 @@ import re
 from dataclasses import dataclass
 from typing import Final
 
-from xlmc.excel.address import Cell
+from xlmc.errors import ErrorCode
+from xlmc.excel.address import Cell, column_letters
 from xlmc.excel.workbook.printable import label
 from xlmc.excel.workbook.workbook import Workbook
 
-__all__ = ["Label", "label_of"]
+__all__ = ["Label", "is_year", "label_of"]
 
 _FARTHEST: Final = 30
 """Cells to the left, and above, in which a label is looked for."""
@@ -46,13 +47,15 @@ class Label:
 def label_of(book: Workbook, cell: Cell) -> Label:
     """Return the name and the unit of a cell by the texts around it.
 
-    The name is the nearest text to the left. Where another number stands between, the cell is one of a row of numbers,
-    and the text above it is added; without a text to the left, it is that alone. So it is for a row of cells with
-    headings right above, and nothing beside or below it. A symbol of a unit right of the cell, between it and its name
+    The name is the nearest text to the left. Where another number stands between, or right of the cell under a heading
+    of its own, the cell is one of a row of numbers, and the text above it is added; without a text to the left, it is
+    that alone. So it is for a row of cells with headings right above, and nothing beside or below it. Years that head a
+    row or a column are such texts. A symbol of a unit right of the cell, between it and its name
     or its heading, or in brackets behind the name, is its unit.
     """
     left, between = _left(book, cell)
     above, unit = _above(book, cell)
+    between = between or (bool(left) and _is_first_of_row(book, cell))
     if _is_under_heading(book, cell):
         left = []
     if left and not between:
@@ -85,8 +88,8 @@ def _left(book: Workbook, cell: Cell) -> tuple[list[str], bool]:
             if texts:
                 break
             continue
-        if isinstance(content.value, str):
-            texts.append(content.value.strip())
+        if isinstance(content.value, str) or is_year(book, Cell(cell.sheet, cell.row, column)):
+            texts.append(_text(book, Cell(cell.sheet, cell.row, column)))
             if len(texts) > 1:
                 break
         elif texts:
@@ -113,17 +116,51 @@ def _above(book: Workbook, cell: Cell) -> tuple[str, str]:
 
 
 def _text(book: Workbook, cell: Cell) -> str:
-    """Return the text of a cell that no formula computes; otherwise an empty one."""
+    """Return the text of a cell, or the year that it heads a row or a column with; otherwise an empty one."""
     if cell.row < 1:
         return ""
     value = book.content(cell).value
-    return value.strip() if isinstance(value, str) else ""
+    if isinstance(value, str):
+        return value.strip()
+    return f"{value:.0f}" if isinstance(value, int | float) and is_year(book, cell) else ""
+
+
+def is_year(book: Workbook, cell: Cell) -> bool:
+    """Whether a number heads a column or a row of a table by years: the one beside it is the next or the last year."""
+    year = book.content(cell).value
+    if not isinstance(year, int | float) or year not in range(1900, 2101):
+        return False
+    beside = [(cell.row, cell.column + step) for step in (-1, 1)] + [(cell.row + step, cell.column) for step in (-1, 1)]
+    contents = [book.content(Cell(cell.sheet, *place)) for place in beside if min(place) > 0]
+    following = f"{column_letters(cell.column)}{cell.row}+1"
+    return any(
+        content.value in (year - 1, year + 1)
+        or (content.formula is not None and content.formula.text.replace("$", "").replace(" ", "") == following)
+        for content in contents
+    )
+
+
+def _is_first_of_row(book: Workbook, cell: Cell) -> bool:
+    """Return whether a number stands right of the cell, and a heading right above the block over each of both."""
+    right = book.content(Cell(cell.sheet, cell.row, cell.column + 1))
+    if not isinstance(right.value, int | float) or isinstance(right.value, bool | ErrorCode):
+        return False
+    for row in range(cell.row - 1, max(0, cell.row - 1 - _FARTHEST), -1):
+        texts = [_text(book, Cell(cell.sheet, row, cell.column + step)) for step in (0, 1)]
+        if any(texts):
+            return all(texts)
+    return False
 
 
 def _is_under_heading(book: Workbook, cell: Cell) -> bool:
     """Return whether a text stands right above, a blank cell below, and one left of the numbers beside the cell."""
-    heading = _text(book, Cell(cell.sheet, cell.row - 1, cell.column))
-    if not heading or _is_unit(heading) or not book.content(Cell(cell.sheet, cell.row + 1, cell.column)).is_blank:
+    heading = book.content(Cell(cell.sheet, cell.row - 1, cell.column)).value if cell.row > 1 else None
+    if (
+        not isinstance(heading, str)
+        or not heading.strip()
+        or _is_unit(heading)
+        or not book.content(Cell(cell.sheet, cell.row + 1, cell.column)).is_blank
+    ):
         return False
     for column in range(cell.column - 1, 0, -1):
         content = book.content(Cell(cell.sheet, cell.row, column))

@@ -12,7 +12,7 @@ from xlmc.errors import DefinitionError, FormulaError
 from xlmc.excel.address import Area, Cell, column_letters
 from xlmc.excel.formula import Graph, Resolver, build_graph
 from xlmc.excel.formula.precedents import references
-from xlmc.excel.workbook.labels import label_of
+from xlmc.excel.workbook.labels import is_year, label_of
 from xlmc.excel.workbook.workbook import CellContent, Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.distributions.spelling import name_key
@@ -89,13 +89,12 @@ def proposals(
     passed: list[tuple[Cell, str]] = []
     if assumptions is None:
         shown = {sheet.name for sheet in book.sheets.values() if sheet.visible}
-        found = (cell for cell in used if cell.sheet in shown and _is_number(book.content(cell)))
-        inputs = [cell for cell in found if not _is_year(book, cell)]
+        inputs = [cell for cell in used if cell.sheet in shown and _is_quantity(book, cell)]
     else:
         inputs = list(_asked(assumptions, lambda cell: _not_an_input(book, computed, cell), "assumption", passed))
     inputs = [cell for cell in inputs if cell not in known and not _in_own_table(book, cell)]
     if forecasts is None:
-        numbers = inputs if assumptions is not None else [cell for cell in used if _is_number(book.content(cell))]
+        numbers = inputs if assumptions is not None else [cell for cell in used if _is_quantity(book, cell)]
         ends = list(_ends(book, formulas, frozenset(numbers)))
     else:
         ends = list(_asked(forecasts, lambda cell: _not_an_answer(book, computed, cell), "forecast", passed))
@@ -104,9 +103,14 @@ def proposals(
     names: set[str] = set()
     answers: set[str] = set()
     order = {name: number for number, name in enumerate(book.sheets)}
-    inputs, ends = (
-        sorted(cells, key=lambda cell: (order[cell.sheet], cell.row, cell.column)) for cells in (inputs, ends)
-    )
+
+    def in_order(cells: list[Cell], asked: bool) -> list[Cell]:
+        """Return the cells in the order in which they were asked for, or in which the sheets are read; each once."""
+        if asked:
+            return list(dict.fromkeys(cells))
+        return sorted(cells, key=lambda cell: (order[cell.sheet], cell.row, cell.column))
+
+    inputs, ends = in_order(inputs, assumptions is not None), in_order(ends, forecasts is not None)
     shown_ends = list(islice(_computable(book, ends, inputs, passed), most)) if forecasts is None else ends
     further = sum(cell not in shown_ends for cell in ends) - sum(cell in ends for cell, _ in passed)
     return Proposals(
@@ -127,19 +131,20 @@ def _computable(
     )
     held = {cell: float(book.content(cell).value) for cell in inputs}  # type: ignore[arg-type]  # inputs are numbers
 
-    def fault(wanted: list[Cell]) -> str:
+    def fault(wanted: list[Cell]) -> FormulaError | None:
         try:
             lowering = lower_cells(resolver, wanted, {}, held)
         except FormulaError as error:
-            return error.message
-        return next((each.message for cell, each in lowering.faults.items() if cell in varying), "")
+            return error
+        return next((each for cell, each in lowering.faults.items() if cell in varying), None)
 
     sure = 0 if fault(cells[:MOST_FORECASTS]) else MOST_FORECASTS
     yield from cells[:sure]
     for cell in cells[sure:]:
         why = fault([cell])
-        if why:
-            passed.append((cell, f"cannot be computed ({why})"))
+        if why is not None:
+            cure = f"; {why.hint}" if why.hint else ""
+            passed.append((cell, f"cannot be computed ({why.message}{cure})"))
         else:
             yield cell
 
@@ -169,7 +174,8 @@ def _ends(book: Workbook, formulas: Collection[Cell], inputs: frozenset[Cell]) -
     for cell in formulas:
         content = book.content(cell)
         number = type(content.value) in (int, float, type(None))
-        if cell in graph.varying and cell not in read and number and book.sheets[cell.sheet].visible:
+        shown = book.sheets[cell.sheet].visible and not is_year(book, cell)
+        if cell in graph.varying and cell not in read and number and shown:
             yield cell
 
 
@@ -209,24 +215,14 @@ def _not_an_answer(book: Workbook, computed: Computed, cell: Cell) -> tuple[str,
     return None
 
 
+def _is_quantity(book: Workbook, cell: Cell) -> bool:
+    """Whether a cell holds a number that is no year at the head of a column or a row."""
+    return _is_number(book.content(cell)) and not is_year(book, cell)
+
+
 def _is_number(content: CellContent) -> bool:
     value = content.value
     return content.formula is None and type(value) in (int, float)
-
-
-def _is_year(book: Workbook, cell: Cell) -> bool:
-    """Whether a number heads a column or a row of a table by years: the one beside it is the next or the last year."""
-    year = book.content(cell).value
-    if not isinstance(year, int | float) or year not in range(1900, 2101):
-        return False
-    beside = [(cell.row, cell.column + step) for step in (-1, 1)] + [(cell.row + step, cell.column) for step in (-1, 1)]
-    contents = [book.content(Cell(cell.sheet, *place)) for place in beside if min(place) > 0]
-    following = f"{column_letters(cell.column)}{cell.row}+1"
-    return any(
-        content.value in (year - 1, year + 1)
-        or (content.formula is not None and content.formula.text.replace("$", "").replace(" ", "") == following)
-        for content in contents
-    )
 
 
 def _proposal(book: Workbook, cell: Cell, names: set[str]) -> Proposal:

@@ -48,7 +48,7 @@ TRIALS = ParameterSpec("trials", ("Trials",))
 SUCCESS = ParameterSpec("success", ("Success", "Successes"))
 POPULATION = ParameterSpec("population", ("Population",))
 SHAPE = ParameterSpec("shape", ("Shape",))
-RATE = ParameterSpec("rate", ("Rate",))
+RATE = ParameterSpec("rate", ("Rate", "Mean"))
 
 FARTHEST = 2.0**52
 """Whole numbers are exact up to here."""

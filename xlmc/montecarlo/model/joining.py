@@ -15,6 +15,7 @@ from typing import Any, Final, TypeVar
 from xlmc.errors import DefinitionError, FormulaError, Notice, SimulationError
 from xlmc.excel.address import Area, Cell, InFormula, host_of
 from xlmc.excel.formula import ir
+from xlmc.excel.formula.graph import BREAK
 from xlmc.excel.formula.substitute import substitute
 from xlmc.excel.workbook.lazy_sheets import with_cells
 from xlmc.excel.workbook.workbook import CellContent, Formula, LinkedBook, Sheet, Workbook
@@ -55,7 +56,31 @@ def joined(model: CompiledModel, feeds: Sequence[Feed], sources: Mapping[str, Co
         joining.feed(feed)
     books = {name: source.workbook for name, source in sources.items()}
     definitions = replace(joining.definitions(), feeding=Feeding(tuple(feeds), model.workbook, books))
-    return CompiledModel(joining.workbook(), definitions, model.path)
+    try:
+        return CompiledModel(joining.workbook(), definitions, model.path)
+    except FormulaError as error:
+        circle = _circle(feeds) if error.hint == BREAK else ()
+        if not circle:
+            raise
+        message = f"the workbooks feed each other in a circle: {' → '.join((*circle, circle[0]))}"
+        raise SimulationError(message, where=circle[0], hint="leave out one of the feeds between them") from error
+
+
+def _circle(feeds: Sequence[Feed]) -> tuple[str, ...]:
+    """Return the names of workbooks of which each feeds the next, and the last the first; none if there are none."""
+    fed: dict[str, dict[str, None]] = {}
+    names = {each.file.casefold(): each.file for each in feeds}
+    for each in feeds:
+        fed.setdefault(each.file.casefold(), {})[each.book.casefold()] = None
+
+    def walk(path: tuple[str, ...]) -> tuple[str, ...]:
+        for book in fed.get(path[-1], ()):
+            found = path[path.index(book) :] if book in path else walk((*path, book))
+            if found:
+                return found
+        return ()
+
+    return tuple(names.get(each, each) for each in next(filter(None, (walk((each,)) for each in fed)), ()))
 
 
 def _refuse_names(model: CompiledModel, sources: Mapping[str, CompiledModel]) -> None:

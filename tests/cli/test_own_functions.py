@@ -204,6 +204,7 @@ STUDIES = {
     "methods": ("-n", 2_000),
     "verify": (),
     "decide": (),
+    "optimise": ("--maximise", "stress"),
     "uncertainty": (),
     "compare": ("beam.xlsx",),
     "calculate": ("--cells", "Model!B2"),

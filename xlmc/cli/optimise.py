@@ -83,7 +83,7 @@ def optimise(
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
-    files = Files((*output, *also), [book], overwrite=overwrite, of_run=True)
+    files = Files((*output, *also), [book], overwrite=overwrite, of_run=True, functions=functions)
     files.check()
     with step_line(quiet) as tell:
         found = study(

@@ -166,6 +166,18 @@ def book_of_readings(path, readings=READINGS, trials=4_000):
     return path
 
 
+def with_column(path, target, heading):
+    """The workbook with one more column in its table of assumptions."""
+    book = openpyxl.load_workbook(path)
+    sheet, table = next((s, t) for s in book for t in s.tables.values() if t.name == "xlmc_assumptions")
+    first, top, last, bottom = range_boundaries(table.ref)
+    sheet.cell(top, last + 1, heading)
+    table.ref = f"{sheet.cell(top, first).coordinate}:{sheet.cell(bottom, last + 1).coordinate}"
+    table.tableColumns = []
+    book.save(target)
+    return target
+
+
 def _headings_above(sheet, row):
     """Heading -> column, of the table that holds a row."""
     for table in sheet.tables.values():

@@ -32,7 +32,7 @@ PATIENCE = 120.0
 
 TABS = ("charts", "matters", "pairs", "tables", "scenarios", "studies")
 KINDS = (
-    "move move move hold numbers freeze band limit limit reading state use run reset keep keep drop show undo variants"
+    "move move move hold numbers freeze band limit limit reading state use run type reset keep keep drop show undo variants"
     " compare view view pin stop print save book book reload restart restore burst"
 )
 """What a client does next; twice what is done more often."""
@@ -269,6 +269,16 @@ class Use:
             name = dice.choice(["sum", "product"])
             key, values = dice.choice([("threshold", ["none", 0.0, 25.0, None]), ("central", [80.0, 100.0, None])])
             self._set(client, "forecast", name, key, dice.choice(values))
+        elif what == "type":
+            client.say(
+                "set",
+                of="assumption",
+                name=row["name"],
+                key="kind",
+                held=False,
+                seq=self.seq,
+                value=dice.choice([None, "Uniform", "Normal", "Lognormal"]),
+            )
         elif what == "run":
             client.say("run", trials=dice.choice([None, 500, 2_000]), seed=dice.choice([None, None, 7]))
         elif what == "reset":

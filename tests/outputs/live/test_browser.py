@@ -800,6 +800,26 @@ def test_a_reading_is_dragged_limits_go_and_answers_are_stated_otherwise(chromiu
     assert (above.get_attribute("value"), central.get_attribute("value")) == ("35", "51")
 
 
+def test_a_kind_of_distribution_is_chosen_by_its_picture(chromium, running, tmp_path):
+    page = Page(chromium, running(book=book_of_readings(tmp_path / "case.xlsx")))
+    card = page.card("t")
+    page.click(card.find_element("css selector", ".kinds summary"))
+    page.at_rest(lambda: page.click(page.button("Normal", "article[aria-label='t'] .gallery")))
+    assert page.changes == ["t: kind Uniform → Normal"]
+    boxes = "return [...arguments[0].querySelectorAll('.numbers > .number-box')].map((each) => each.innerText.split(/\\s/)[0])"
+    assert page.run(boxes, card) == ["Mean", "Std"]
+    page.at_rest(lambda: page.type(page.box(card, "Mean"), "2.1"))
+    assert "Normal: Mean 2.1" in card.text
+    page.at_rest(lambda: page.slider("Mean of t").send_keys("\ue014"))
+    page.at_rest(lambda: page.click(page.button("Uniform", "article[aria-label='t'] .gallery")))
+    assert page.changes == []
+    assert page.run(boxes, card) == ["Low", "High"]
+    pressed = "return [...arguments[0].querySelectorAll('.gallery [aria-pressed=true]')].map((each) => each.innerText)"
+    assert page.run(pressed, card) == ["Uniform"]
+    page.at_rest(lambda: page.click(page.one("#undo")))
+    assert page.run(pressed, card) == ["Normal"]
+
+
 def test_trials_and_seed_are_typed_and_brought_back(chromium, running, tmp_path):
     page = Page(chromium, running(book=book_of_readings(tmp_path / "case.xlsx")))
     trials, seed = (page.box(page.one("#run"), label) for label in ("Trials", "Seed"))

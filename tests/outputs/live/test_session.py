@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from itertools import chain, repeat
 
@@ -21,6 +22,7 @@ from live_books import (
     small,
     type_in,
     wide_book,
+    with_column,
 )
 from openpyxl.worksheet.table import Table
 
@@ -34,9 +36,10 @@ from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.outputs.live.adjustments import NONE, Adjustments, adjustments_of, in_words, scenario_of
 from xlmc.outputs.live.hand_over import page_of
 from xlmc.outputs.live.jobs import MOVING_TRIALS, Outcome, SupersededError
+from xlmc.outputs.live.kinds import in_kind
 from xlmc.outputs.live.protocol import PageMessage, written
 from xlmc.outputs.live.session import Session
-from xlmc.outputs.live.window_book import filter_rows
+from xlmc.outputs.live.window_book import assumption_rows, filter_rows
 
 FRICTION = "Chevrolet post-impact deceleration"
 
@@ -479,6 +482,88 @@ def test_a_scenario_headed_by_what_has_a_handle_can_be_shown(readings, tmp_path,
     assert session.rest.trial_index.tobytes() == expected.trial_index.tobytes()
     for name, values in expected.forecasts.items():
         assert session.rest.forecasts[name].tobytes() == values.tobytes()
+
+
+KINDS_MOVED = {
+    "ends become a mean": ("t", "Normal", {}),
+    "a mean becomes ends": ("v", "Uniform", {}),
+    "its numbers are moved": ("t", "Normal", {"mean": 2.1, "std_dev": 0.4}),
+    "of positive numbers": ("v", "Lognormal", {"std_dev": 3.0}),
+}
+COLUMNS = {"low": "Low", "high": "High", "mean": "Mean", "std_dev": "Std dev", "location": "Location"}
+
+
+@pytest.mark.parametrize(("name", "kind", "numbers"), KINDS_MOVED.values(), ids=KINDS_MOVED)
+def test_another_kind_of_distribution_gives_what_the_edited_workbook_gives(
+    readings, tmp_path, monkeypatch, name, kind, numbers
+):
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", moving := 2_000)
+    path, _ = readings
+    if kind == "Lognormal":  # a table needs a column for every number
+        path = with_column(path, tmp_path / "wider.xlsx", "Location")
+    model = load(path)
+    session = Session(model)
+    settle(session)
+    first = session.rest
+    session.receive(change(name, "kind", kind))
+    for key, value in numbers.items():
+        session.receive(change(name, key, value))
+    (row,) = (each for each in assumption_rows(model, session.adjustments) if each["name"] == name)
+    shown = {each["key"]: each["value"] for each in row["numbers"]}
+    assert row["kind"] == kind
+    assert numbers.items() <= shown.items()
+    typed = {(name, heading): None for heading in ("Low", "High", "Mean", "Std dev", "Lower cutoff", "Upper cutoff")}
+    typed |= {(name, COLUMNS[key]): value for key, value in shown.items()} | {(name, "Distribution"): kind}
+    copy = load(edited(path, tmp_path / "edited.xlsx", typed))
+    found = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    expected = simulate(copy, trials=moving, sampling="mc", evidence=found.settings.evidence)
+    assert found.trial_index.tobytes() == expected.trial_index.tobytes()
+    settle(session)
+    expected = simulate(copy, evidence=None)
+    assert session.rest.trial_index.tobytes() == expected.trial_index.tobytes()
+    for forecast, values in expected.forecasts.items():
+        assert session.rest.forecasts[forecast].tobytes() == values.tobytes(), forecast
+    state = session.at_rest()
+    assert f"→ {kind}" in state.changes[0]
+    assert page_of(state)  # which is of a copy with these changes typed into it, compared to the last bit
+    session.receive(PageMessage("keep", {"name": "kept"}))
+    again = Adjustments.of_json(json.loads(json.dumps(session.stored["kept"].as_json())))
+    assert again == session.adjustments
+    assert adjustments_of(model.definitions, scenario_of(model.definitions, "kept", again)) == again
+    for _ in range(2 + len(numbers)):
+        session.receive(PageMessage("undo", {}))
+    settle(session)
+    assert not session.adjustments
+    assert session.rest.trial_index.tobytes() == first.trial_index.tobytes()
+
+
+def test_an_assumption_gets_its_own_kind_back_with_its_own_numbers(readings):
+    session = Session(readings[1])
+    for kind in ("Triangular", "Normal"):
+        session.receive(change("t", "kind", kind))
+    assert session.adjustments == Adjustments({"t": {"kind": "Normal"}})
+    assert in_words(session.own.definitions, session.adjustments) == ["t: kind Uniform → Normal"]
+    with pytest.raises(XlmcError, match="'low' to be set"):
+        session.receive(change("t", "low", 1.0))
+    session.receive(change("t", "frozen", True))
+    session.receive(change("t", "kind", None))
+    assert session.adjustments == Adjustments({"t": {"frozen": True}})
+    for value in ("none", True, 3.0):
+        with pytest.raises(XlmcError, match="'kind' to be set"):
+            session.receive(change("t", "kind", value))
+    with pytest.raises(ValueError, match="no kind"):
+        Adjustments.of_json({"assumptions": {"t": {"kind": "Uniforn"}}, "filters": {}})
+
+
+def test_ends_and_moments_stay_where_a_kind_can_keep_them(readings):
+    t = next(each for each in readings[1].assumptions if each.name == "t")  # uniform from 1.5 to 2.5
+    assert in_kind(t, "Triangular").given == {"low": 1.5, "likeliest": 2.0, "high": 2.5}
+    assert in_kind(t, "BetaPERT").given == {"low": 1.5, "likeliest": 2.0, "high": 2.5}
+    assert in_kind(t, "Normal").given == {"mean": 2.0, "std_dev": pytest.approx(1 / math.sqrt(12), abs=1e-3)}
+    assert in_kind(t, "Lognormal").given == {"location": 0.0, **in_kind(t, "Normal").given}
+    below = t.with_numbers({"low": -1.0, "high": 1.0})
+    assert in_kind(below, "Lognormal").given["location"] == -3.0
+    assert in_kind(t, "Uniform") is t
 
 
 def test_trials_and_seed_give_what_a_workbook_with_these_settings_gives(readings, tmp_path, monkeypatch):

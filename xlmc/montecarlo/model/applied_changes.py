@@ -317,6 +317,8 @@ def _merged(again: Definitions, old: Definitions, new: Definitions) -> Definitio
 
 
 def _with_difference(again: Assumption, old: Assumption, new: Assumption) -> Assumption:
+    if old.distribution != new.distribution:
+        again = replace(new, cell=again.cell, row=again.row, notes=again.notes)
     keys = [*new.given, *old.given]
     numbers = {key: new.given.get(key) for key in keys if old.given.get(key) != new.given.get(key)}
     return replace(again.with_numbers(numbers), frozen=new.frozen, base=new.base)

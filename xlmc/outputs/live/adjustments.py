@@ -1,9 +1,10 @@
 """What was changed in the window, beside the workbook: numbers of assumptions, filters and forecasts, and switches.
 
-Keys of an assumption are those of its parameters and cutoffs, `base` for the value that it is held at, `frozen`, and
-those of a band of its distribution that it is confined to; keys of a filter are those of its limits, of a row of
-evidence its `reading` and those of its error, and of both `used`; keys of a forecast are its `threshold` and `central`,
-its central range in percent. A limit, cutoff or threshold that is `NONE` is taken away.
+Keys of an assumption are those of its parameters and cutoffs, `base` for the value that it is held at, `frozen`, those
+of a band of its distribution that it is confined to, and `kind`, the name of its distribution, whose numbers it then
+has; keys of a filter are those of its limits, of a row of evidence its `reading` and those of its error, and of both
+`used`; keys of a forecast are its `threshold` and `central`, its central range in percent. A limit, cutoff or threshold
+that is `NONE` is taken away.
 """
 
 from __future__ import annotations
@@ -11,7 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, Final, Literal
+from typing import Any, Final
 
 from xlmc.analysis.results.statements.in_words import number_text
 from xlmc.errors import ErrorCode
@@ -27,12 +28,15 @@ from xlmc.montecarlo.definitions.scenarios import (
     Measured,
     Numbers,
     Range,
+    Redrawn,
     Scenario,
     Stated,
     Switched,
     Typed,
 )
+from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.distributions.spelling import name_key, plain
+from xlmc.outputs.live.kinds import KINDS, distribution_in_kind, in_kind, kinds_of
 
 __all__ = [
     "BAND",
@@ -79,10 +83,13 @@ NONE: Final = "none"
 REMOVABLE: Final = frozenset({*LIMITS, *CUTOFFS, "threshold"})
 """Keys of what can be taken away."""
 
+_HEADINGS_OF_KINDS: Final = {spec.key: spec.heading for kind in KINDS for spec in FAMILIES[kind].parameters}
+
 PARTS: Final = {"assumption": "assumptions", "filter": "filters", "forecast": "forecasts"}
 """Kind of row -> the field of `Adjustments` that holds its changes."""
 
-Amount = float | bool | Literal["none"]
+Amount = float | bool | str
+"""A number, a switch, `NONE`, or a kind of distribution."""
 
 Changed = Mapping[str, Mapping[str, Amount]]
 """Name -> key -> value."""
@@ -117,10 +124,20 @@ class Adjustments:
         """
         found = Adjustments()
         for of, name, key, value in self._each():
-            own = own_values(definitions, of, name)
+            own = own_values(definitions, of, name, self.kind(of, name))
             if key in own and not is_own(value, own[key]):
                 found = found.having(of, name, key, value)
         return found
+
+    def kind(self, of: str, name: str) -> str | None:
+        """Return the kind of distribution that an assumption was given; None for the workbook's."""
+        found = self.assumptions.get(name, {}).get("kind") if of == "assumption" else None
+        return found if isinstance(found, str) else None
+
+    def in_kind(self, name: str, kind: str | None) -> Adjustments:
+        """Return the adjustments with an assumption in another kind, whose numbers suit it; None for its own."""
+        kept = {key: value for key, value in self.assumptions.get(name, {}).items() if key in ("base", "frozen", *BAND)}
+        return self._with("assumption", name, kept if kind is None else {"kind": kind, **kept})
 
     def frozen_part(self, definitions: Definitions) -> Adjustments:
         """Return the part that says what is held and where, and which rows are used; nothing that has no effect."""
@@ -195,13 +212,17 @@ def _amount(key: str, value: object) -> Amount:
         return value
     if value == NONE and key in REMOVABLE:
         return NONE
+    if key == "kind":
+        if value not in KINDS:
+            raise ValueError(f"there is no kind {value!r}")
+        return str(value)
     number = float(value)  # type: ignore[arg-type]  # whatever it is
     if not math.isfinite(number):
         raise ValueError(f"{key} is {number}")
     return number
 
 
-def is_own(value: Amount, own: Parameter | bool | None) -> bool:
+def is_own(value: Amount, own: Parameter | bool | str | None) -> bool:
     """Return whether a value is what the workbook says."""
     return value == own or (value == NONE and own is None)
 
@@ -211,8 +232,13 @@ def assumption_numbers(assumption: Assumption) -> dict[str, tuple[str, Parameter
     return {key: (heading, assumption.given[key]) for key, heading in assumption.headings.items()}
 
 
-def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parameter | bool | None]:
-    """Return what can be set of a row, as the workbook has it; nothing of a name that it does not have."""
+def own_values(
+    definitions: Definitions, of: str, name: str, kind: str | None = None
+) -> dict[str, Parameter | bool | str | None]:
+    """Return what can be set of a row, as the workbook has it; nothing of a name that it does not have.
+
+    Of an assumption in another `kind` these are the numbers that suit it.
+    """
     if of == "filter":
         rows = (*definitions.filters, *definitions.forecast_filters, *definitions.unused)
         filter_ = next((each for each in rows if each.name == name), None)
@@ -226,8 +252,11 @@ def own_values(definitions: Definitions, of: str, name: str) -> dict[str, Parame
     assumption = next((each for each in definitions.assumptions if each.name == name), None)
     if assumption is None:
         return {}
+    own_kind = {"kind": assumption.distribution} if kinds_of(assumption) else {}
+    if kind is not None:
+        assumption = in_kind(assumption, kind)
     numbers = {key: value for key, (_, value) in assumption_numbers(assumption).items()}
-    return {**numbers, **BAND, "base": assumption.base, "frozen": assumption.frozen}
+    return {**own_kind, **numbers, **BAND, "base": assumption.base, "frozen": assumption.frozen}
 
 
 def movable_limits(filter_: Filter) -> dict[str, Parameter]:
@@ -281,6 +310,9 @@ def _of_assumption(assumption: Assumption, given: dict[str, Amount]) -> Iterator
     if assumption.frozen:
         yield Drawn(name)
     low, high = (float(given.pop(key, end)) for key, end in BAND.items())
+    kind = given.pop("kind", None)
+    if kind in kinds_of(assumption) and kind != assumption.distribution:
+        yield Redrawn(name, distribution_in_kind(assumption, str(kind)))
     if given:
         yield Numbers(name, _numbers(given))
     if (low, high) != (*BAND.values(),):
@@ -296,13 +328,16 @@ def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments 
     """Return a scenario of the workbook as a state of the window; None if the window has no handle for a change."""
     assumptions = {each.name: each for each in definitions.assumptions}
     found = Adjustments()
+    kinds: dict[str, str] = {}
     typed = [_of_handle(definitions, each) for each in scenario.changes if isinstance(each, Typed)]
     for change in (*typed, *(each for each in scenario.changes if not isinstance(each, Typed))):
         values = _values(change, assumptions)
         if values is None:
             return None
         of, name = _row_of(change)
-        own = own_values(definitions, of, name)
+        if isinstance(change, Redrawn):
+            kinds[name] = change.distribution.family
+        own = own_values(definitions, of, name, kinds.get(name))
         for key, value in values.items():
             if key not in own and value == NONE:
                 continue  # there is nothing to be taken away
@@ -372,7 +407,7 @@ def _row_of(change: Change) -> tuple[str, str]:
             return "filter", name
         case Stated(name):
             return "forecast", name
-        case Frozen(name) | Drawn(name) | Band(name) | Range(name) | Numbers(name):
+        case Frozen(name) | Drawn(name) | Band(name) | Range(name) | Numbers(name) | Redrawn(name):
             return "assumption", name
     raise TypeError(change)
 
@@ -386,6 +421,9 @@ def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, 
             return {"frozen": False}
         case Switched(_, used):
             return {"used": used}
+        case Redrawn(name, to) if name in assumptions and to.family in kinds_of(assumptions[name]):
+            suited = in_kind(assumptions[name], to.family).given
+            return {"kind": to.family, **{key: value for key, value in to.given.items() if value != suited.get(key)}}
         case Band(_, low, high):
             return dict(zip(BAND, (low, high), strict=True))
         case Range(name, low, high) if name in assumptions and {"low", "high"} <= {*assumptions[name].parameters}:
@@ -416,6 +454,7 @@ def _assumption(assumption: Assumption, changed: Changed) -> Assumption:
     frozen_part: dict[str, Any] = {key: given.pop(key) for key in ("base", "frozen") if key in given}
     for key in BAND:
         given.pop(key, None)
+    assumption = in_kind(assumption, str(given.pop("kind", assumption.distribution)))
     return replace(assumption.with_numbers(_numbers(given)), **frozen_part)
 
 
@@ -446,7 +485,7 @@ def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
     """Say what differs, a phrase each: `friction: High 0.75 → 0.85`; also of what the workbook no longer has."""
     found = []
     for of, name, key, value in adjustments._each():
-        own = own_values(definitions, of, name)
+        own = own_values(definitions, of, name, adjustments.kind(of, name))
         if key in own:
             label = changed_text(definitions, of, name, key, own[key], value)
         else:
@@ -457,7 +496,7 @@ def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
 
 
 def changed_text(
-    definitions: Definitions, of: str, name: str, key: str, before: Parameter | bool | None, after: Amount
+    definitions: Definitions, of: str, name: str, key: str, before: Parameter | bool | str | None, after: Amount
 ) -> str:
     """Write a change: `High 0.75 → 0.85`, `frozen`, `at least 0 → 0.1`."""
     if key == "frozen":
@@ -469,11 +508,11 @@ def changed_text(
     elif key in BAND:
         heading = "band from" if key == "band_low" else "band to"
         return f"{heading} {_amount_text(key, after)} %"
-    elif key == "base":
-        heading = "value"
+    elif key in ("base", "kind"):
+        heading = {"base": "value", "kind": "kind"}[key]
     else:
         assumption = next(each for each in definitions.assumptions if each.name == name)
-        heading = assumption_numbers(assumption)[key][0]
+        heading = {**_HEADINGS_OF_KINDS, **assumption.headings}[key]
     shown = "none" if before is None else _amount_text(key, before)
     return f"{heading} {shown} → {_amount_text(key, after)}"
 
@@ -482,8 +521,8 @@ def _amount_text(key: str, value: Parameter | Amount) -> str:
     """Write a value: `0.75`, `51 %`; `none` for what is taken away; `on` and `off` of a switch."""
     if isinstance(value, bool):
         return ("off", "on")[value]
-    if value == NONE:
-        return NONE
+    if isinstance(value, str):
+        return value
     return f"{number_text(value)} %" if key == "central" else number_text(value)
 
 

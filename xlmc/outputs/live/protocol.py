@@ -9,9 +9,9 @@ secret, and a number that is used once; anything else before it ends the connect
 | `proof` | `proof` | the answer to the server's `proof` (`xlmc.outputs.live.guard` says of what) |
 | `copy` | `key` | on the start page: copy a template into the folder and open it |
 | `ticket` | | on the start page: a file is to be sent |
-| `set` | `of`, `name`, `key`, `value`, `held`, `seq` | a number or a switch of an assumption, filter or forecast; \
-`value` null: as in the book, `none`: taken away; `held`: a handle is still held; `seq`: counts the page's changes, \
-and comes back with the frame |
+| `set` | `of`, `name`, `key`, `value`, `held`, `seq` | a number, a switch or the kind of an \
+assumption, filter or forecast; `value` null: as in the book, `none`: taken away; `held`: a handle is still held; \
+`seq`: counts the page's changes, and comes back with the frame |
 | `numbers` | `of`, `name`, `values`, `seq` | several numbers of one row at once: key -> number |
 | `run` | `trials`, `seed` | of runs at rest, instead of what the workbook says; null: what it says |
 | `undo`, `redo` | | go back to the state before the last change, and forth again |
@@ -75,6 +75,7 @@ from typing import Any, Final
 
 from xlmc.errors import XlmcError
 from xlmc.outputs.live.adjustments import NONE, PARTS
+from xlmc.outputs.live.kinds import KINDS
 
 __all__ = ["MOST_BYTES", "Message", "PageMessage", "ProtocolError", "read_message", "written"]
 
@@ -111,7 +112,7 @@ def _is_text(value: object) -> bool:
 
 
 def _is_value(value: object) -> bool:
-    return value is None or isinstance(value, bool) or value == NONE or _is_number(value)
+    return value is None or isinstance(value, bool) or value == NONE or value in KINDS or _is_number(value)
 
 
 def _is_number(value: object) -> bool:

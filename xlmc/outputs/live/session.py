@@ -49,6 +49,7 @@ from xlmc.outputs.live.jobs import (
     sketched_tab,
     tab_of,
 )
+from xlmc.outputs.live.kinds import KINDS
 from xlmc.outputs.live.moving_models import KnownModels
 from xlmc.outputs.live.pace import Pace
 from xlmc.outputs.live.protocol import Message, PageMessage
@@ -308,7 +309,7 @@ class Session:
         of, name, key, value = sent["of"], sent["name"], sent["key"], sent["value"]
         self._adjust(of, name, {key: value}, sent["seq"])
         self._dragged = sent["held"]
-        own = own_values(self.own.definitions, of, name)
+        own = own_values(self.own.definitions, of, name, self.adjustments.kind(of, name))
         moved = {"kind": "moved", "of": of, "name": name, "key": key, "value": own[key] if value is None else value}
         return Replies(all=[moved]) if self._dragged else True
 
@@ -323,13 +324,17 @@ class Session:
         return True
 
     def _adjust(self, of: str, name: str, values: Mapping[str, Amount | None], seq: int) -> None:
-        """Set numbers and switches; None for the workbook's own."""
-        own = own_values(self.own.definitions, of, name)
+        """Set numbers, switches and a kind; None for the workbook's own."""
+        own = own_values(self.own.definitions, of, name, self.adjustments.kind(of, name))
         for key, value in values.items():
             fits = (key in SWITCHES) == isinstance(value, bool) and (value != NONE or key in REMOVABLE)
+            fits = fits and (key == "kind") == (value in KINDS)
             if key not in own or not (fits or value is None):
                 raise XlmcError(f"the workbook has no {of} {name!r} with {key!r} to be set")
         found = self.adjustments
+        if "kind" in values:
+            kind, values = values["kind"], {}
+            found = found.in_kind(name, None if kind == own["kind"] or kind is None else str(kind))
         for key, value in values.items():
             found = found.having(of, name, key, None if value is None or is_own(value, own[key]) else value)
         if of == "filter":

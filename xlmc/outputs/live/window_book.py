@@ -41,6 +41,7 @@ from xlmc.outputs.live.adjustments import (
     movable_limits,
     own_values,
 )
+from xlmc.outputs.live.kinds import in_kind, kinds_of
 from xlmc.outputs.live.protocol import Message
 from xlmc.outputs.page.payload import CONFIDENCE
 
@@ -97,7 +98,9 @@ def assumption_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[s
 def _assumption(
     model: CompiledModel, assumption: Assumption, own: Assumption, changed: Mapping[str, Any]
 ) -> dict[str, Any]:
-    numbers = [_number(assumption, key, heading, value) for key, (heading, value) in assumption_numbers(own).items()]
+    in_its_kind = in_kind(own, assumption.distribution)
+    pairs = assumption_numbers(in_its_kind).items()
+    numbers = [_number(assumption, key, heading, value) for key, (heading, value) in pairs]
     values = [each["value"] for each in numbers if each["drags"] and each["value"] is not None]
     values += [] if assumption.base is None else [assumption.base]
     step = _step(max(values) - min(values) if values else 0.0, max(map(abs, values), default=1.0))
@@ -107,6 +110,8 @@ def _assumption(
         "source": assumption.source,
         "cell": str(assumption.cell),
         "distribution": distribution_text(assumption),
+        "kinds": kinds_of(own),
+        "kind": assumption.distribution,
         "status": status(model, assumption.name, assumption.frozen),
         "frozen": assumption.frozen,
         "base": assumption.base,

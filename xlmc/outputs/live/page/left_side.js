@@ -10,11 +10,46 @@ function setAll(wire, of, name, values) {
 
 const ENDS = ["low", "high", "likeliest"]; // boxes that take a range
 
+const PICTURES = { // heights of a kind's curve, from its lower end to its upper one
+  Uniform: "M2 20V6H30V20", Triangular: "M2 20L16 4L30 20", BetaPERT: "M2 20C10 20 11 4 16 4S22 20 30 20",
+  Normal: "M1 20C11 20 10 4 16 4S21 20 31 20", Lognormal: "M2 20C6 20 5 4 9 4S14 19 31 20" };
+
+/** The kinds of distribution that an assumption can have, each with a picture; `choose(kind)`: null for its own. */
+class KindMenu {
+  constructor({ name }, choose) {
+    Object.assign(this, { name, choose, kinds: "" });
+    this.named = make("span");
+    this.gallery = make("div", { class: "gallery" });
+    this.root = make("details", { class: "kinds" },
+      make("summary", {}, this.named, make("span", { class: "aside", text: `: kind of ${name}` })), this.gallery);
+  }
+
+  update({ kind, kinds, frozen }) {
+    if (this.kinds !== kinds.join()) this.gallery.replaceChildren(...kinds.map((each, i) => this.button(each, i ? each : null)));
+    this.kinds = kinds.join();
+    this.root.hidden = !kinds.length;
+    this.named.textContent = kind;
+    kinds.forEach((each, i) => {
+      const button = this.gallery.children[i];
+      button.setAttribute("aria-pressed", String(each === kind));
+      button.disabled = frozen;
+    });
+  }
+
+  button(kind, chosen) {
+    const picture = makeSvg("svg", { viewBox: "0 0 32 22", "aria-hidden": "true" });
+    picture.append(makeSvg("path", { d: PICTURES[kind] ?? "M2 20H30" }));
+    return make("button", { type: "button", "aria-label": `${kind}, as the kind of ${this.name}`,
+      on: { click: () => this.choose(chosen) } }, picture, make("span", { text: kind }));
+  }
+}
+
 class AssumptionCard {
   constructor(row, wire, sent) {
     Object.assign(this, { row, wire, sent, boxes: new Map() });
     this.track = new Track(row.name, row.units, (key, value, held, event) => this.set(key, value, held, event));
     this.numbers = make("div", { class: "numbers" });
+    this.kinds = new KindMenu(row, (kind) => this.sent(wire.set("assumption", row.name, "kind", kind, false), null));
     const end = (label, key) => new NumberBox(label, "%", (value) => this.set(key, value, false, null),
       { hidden: `the band of ${row.name}` });
     this.band = { band_low: end("Band from", "band_low"), band_high: end("to", "band_high") };
@@ -33,7 +68,7 @@ class AssumptionCard {
     this.root = make("article", { class: "card", "aria-label": row.name },
       make("h3", {}, named(row.name), make("span", { class: "units", text: row.units ? `, ${row.units}` : "" }),
         this.status, this.back),
-      this.track.box, this.numbers, this.about);
+      this.track.box, this.kinds.root, this.numbers, this.about);
     this.held = make("div", { class: "frozen" }, make("label", {}, this.frozen, " Frozen ",
       make("span", { class: "aside", text: `: ${row.name}` })), this.base.root);
     this.numbers.append(this.held, this.bands);
@@ -86,6 +121,12 @@ class AssumptionCard {
       numbers: row.numbers.filter((each) => each.drags), step: row.step, shape: off ? null : shape, own,
       mark: row.base, off: row.frozen,
     });
+    this.kinds.update(row);
+    for (const [key, box] of this.boxes) {
+      if (row.numbers.some((number) => number.key === key)) continue;
+      box.root.remove();
+      this.boxes.delete(key);
+    }
     for (const number of row.numbers) {
       if (!this.boxes.has(number.key)) {
         const box = new NumberBox(number.heading, "", (value) => this.set(number.key, value, false, null),

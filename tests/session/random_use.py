@@ -50,6 +50,7 @@ HEADINGS = (
     "Lower cutoff",
     "Upper cutoff",
     "Frozen",
+    "Location",
 )
 
 

@@ -32,8 +32,8 @@ PATIENCE = 120.0
 
 TABS = ("charts", "matters", "pairs", "tables", "scenarios", "studies")
 KINDS = (
-    "move move move hold numbers freeze band limit limit reading state use run type reset keep keep drop show undo variants"
-    " compare view view pin stop print save book book reload restart restore burst"
+    "move move move hold numbers freeze band limit limit reading state use run type reset keep keep drop show undo"
+    " variants compare view view pin stop print save book book reload restart restore burst"
 )
 """What a client does next; twice what is done more often."""
 

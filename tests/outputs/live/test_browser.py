@@ -806,7 +806,8 @@ def test_a_kind_of_distribution_is_chosen_by_its_picture(chromium, running, tmp_
     page.click(card.find_element("css selector", ".kinds summary"))
     page.at_rest(lambda: page.click(page.button("Normal", "article[aria-label='t'] .gallery")))
     assert page.changes == ["t: kind Uniform → Normal"]
-    boxes = "return [...arguments[0].querySelectorAll('.numbers > .number-box')].map((each) => each.innerText.split(/\\s/)[0])"
+    of_all = "return [...arguments[0].querySelectorAll('.numbers > .number-box')]"
+    boxes = f"{of_all}.map((each) => each.innerText.split(/\\s/)[0])"
     assert page.run(boxes, card) == ["Mean", "Std"]
     page.at_rest(lambda: page.type(page.box(card, "Mean"), "2.1"))
     assert "Normal: Mean 2.1" in card.text

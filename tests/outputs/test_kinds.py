@@ -14,6 +14,7 @@ import numpy as np
 import openpyxl
 import pytest
 from click.testing import CliRunner
+from kinds_book import FORECASTS, write_book
 from openpyxl.worksheet.table import Table
 
 from xlmc.analysis.results.saved import open_run
@@ -27,22 +28,6 @@ from xlmc.outputs.live.frames import frame_of
 from xlmc.outputs.methods.methods_json import study_json
 from xlmc.outputs.methods.methods_tables import bounds_table, forecast_table, reference_table
 from xlmc.outputs.summary import summarise, summary_text
-
-FORECASTS = {
-    "Speed": ("=B1^2/10", "General", "m", 100),
-    "Cost": ("=B2*(1+B1/100)", '"$"#,##0', "", 260_000),
-    "End": ("=B6+B1*3", "yyyy-mm-dd", "", 46_180),
-    "Rate": ("=B7*0.8", "0.0%", "", 0.35),
-    "Events": ("=B5+1", "General", "events", 4),
-    "Avoided": ("=B1<36", "General", "", None),
-    "Never": ("=B1>1000", "General", "", None),
-    "Verdict": ('=IF(B1<28,"low",IF(B1<36,"middle","high"))', "General", "", None),
-    "Tiny": ("=B4*2", "General", "m", 3e-9),
-    "Huge": ("=B1*1E12/33", "General", "J", None),
-    "Duration": ("=B1/240", "[h]:mm", "", None),
-    "Fixed": ("=B2/8", '#,##0.00 "EUR"', "", None),
-}
-"""Name -> formula, number format, units, threshold."""
 
 KINDS = {
     "Speed": "number",
@@ -58,47 +43,6 @@ KINDS = {
     "Duration": "date or time",
     "Fixed": "currency",
 }
-
-INPUTS = {"B1": 30, "B2": 200_000, "B3": 180_000, "B4": 2e-9, "B5": 3, "B6": 46_082, "B7": 0.4}
-
-ASSUMPTIONS = [
-    ["Name", "Cell", "Distribution", "Low", "High", "Rate"],
-    ["Speed in", "=Model!B1", "Uniform", 25, 40, None],
-    ["Cost in", "=Model!B2", "Uniform", "=Model!B3", "=Model!B3*1.4", None],
-    ["Tiny in", "=Model!B4", "Uniform", 1e-9, 3e-9, None],
-    ["Count", "=Model!B5", "Poisson", None, None, 3.5],
-    ["Start", "=Model!B6", "Uniform", 46_000, 46_200, None],
-    ["Share", "=Model!B7", "Uniform", 0.3, 0.5, None],
-]
-
-
-def write_book(path, *, filtered, kinds=()):
-    """A workbook with a forecast of each kind; `kinds` are those that its column Kind names."""
-    book = openpyxl.Workbook()
-    model, tables = book.active, book.create_sheet("Tables")
-    model.title = "Model"
-    for place, value in INPUTS.items():
-        model[place] = value
-    rows = [["Name", "Cell", "Units", "Threshold", "Kind"]]
-    for row, (name, (formula, digits, units, threshold)) in enumerate(FORECASTS.items(), 10):
-        model[f"B{row}"] = formula
-        model[f"B{row}"].number_format = digits
-        rows.append([name, f"=Model!B{row}", units, threshold, dict(kinds).get(name)])
-    filled = {"xlmc_assumptions": ASSUMPTIONS, "xlmc_forecasts": rows}
-    filled["xlmc_settings"] = [["Setting", "Value"], ["Trials", 4_000]]
-    if filtered:
-        model["D1"] = "=B1+B5"
-        filled["xlmc_filters"] = [["Name", "Cell", "At most", "Because"], ["Limit", "=Model!D1", 42, "measured"]]
-    top = 1
-    for name, content in filled.items():
-        for line in content:
-            tables.append(line)
-        last = openpyxl.utils.get_column_letter(len(content[0]))
-        tables.add_table(Table(displayName=name, ref=f"A{top}:{last}{top + len(content) - 1}"))
-        tables.append([])
-        top += len(content) + 1
-    book.save(path)
-    return path
 
 
 @pytest.fixture(scope="module", params=[False, True], ids=["no-filters", "filters"])

@@ -213,5 +213,23 @@ def _as_json(found: Decided) -> dict[str, object]:
         ],
         "as_it_is": scenario_json(found.base),
         "combinations": [{"values": each.values, **scenario_json(each.answers)} for each in found.combinations],
+        "best": [_best_json(found, each.name) for each in run.model.forecasts],
         "impossible": [{"values": values, "why": why} for values, why in found.impossible.items()],
     }
+
+
+def _best_json(found: Decided, forecast: str) -> dict[str, object]:
+    """Return the combinations with the largest and the smallest mean of a forecast, and how far the next one lies."""
+    from xlmc.cli.study_output import estimate_json
+
+    told: dict[str, object] = {"forecast": forecast}
+    for name, least in (("largest", False), ("smallest", True)):
+        best = found.best(forecast, least=least)
+        told[name] = best and {
+            "values": best.combination.values,
+            "mean": estimate_json(best.mean),
+            "next": best.next and best.next.values,
+            "ahead": best.ahead and estimate_json(best.ahead),
+            "is_sure": best.is_sure,
+        }
+    return told

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 
 from xlmc.analysis.studies.sensitivity.measures import noise
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
-from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Line, Lines, Shape
 from xlmc.outputs.filter_effect import shapes_of
 from xlmc.outputs.summary import shares_of
@@ -58,8 +57,7 @@ def tornado_chart(found: ForecastSensitivity, most: int, title: str) -> Chart:
         for bar in found.bars[:most]
     )
     units = f", {found.change_units}" if found.change_units else ""
-    form = PLAIN if found.form.kind in (Kind.DATE, Kind.YES_NO) else found.form
-    return _bars(title, title, f"Change{units} (light: at 10 %, dark: at 90 %)", bars, form)
+    return _bars(title, title, f"Change{units} (light: at 10 %, dark: at 90 %)", bars, found.change_form)
 
 
 def shares_chart(figure: Figure) -> Chart:
@@ -73,13 +71,14 @@ _MOST_TEXTS = 40
 """Texts that a chart has bars of."""
 
 
-def limit_chart(limit: FilterLimit, indexes: list[int], unit: str) -> Chart:
+def limit_chart(limit: FilterLimit, indexes: list[int], unit: str, form: Form = PLAIN) -> Chart:
     """How the means of some forecasts, which have one unit, change as a limit of a filter moves.
 
     Args:
         limit: of the filter.
         indexes: of the forecasts.
         unit: theirs.
+        form: how changes of them are written.
     """
     lines = tuple(
         Line(
@@ -91,7 +90,8 @@ def limit_chart(limit: FilterLimit, indexes: list[int], unit: str) -> Chart:
     upwards = f"Change of the mean{f', {unit}' if unit else ''}"
     across = f"Limit: {limit.filter} {limit.relation}"
     said = f"Change of each mean: {', '.join(line.name for line in lines)}"
-    return Chart("Change of each mean", across, Lines(lines, upwards, dots=True, now=limit.limit, from_zero=True), said)
+    data = Lines(lines, upwards, dots=True, now=limit.limit, from_zero=True, form_upwards=form)
+    return Chart("Change of each mean", across, data, said)
 
 
 def _bars(title: str, what: str, across: str, bars: tuple[Bar, ...], form: Form = PLAIN) -> Chart:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.statements.in_words import number_text
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.outputs.document.charts import contribution_chart, influence_chart, limit_chart, tornado_chart
 from xlmc.outputs.document.element import EMPTY, Html, element
 from xlmc.outputs.document.html_writer import picture_html
@@ -74,33 +76,36 @@ def limits(found: Sensitivities) -> Html:
     """Return the section with how the answers move with each limit; nothing if no filter has one."""
     if not (found.filter_limits or found.varying_limits or found.omitted_limits):
         return EMPTY
-    units = {each.forecast: each.units for each in found.forecasts}
+    forecasts = {each.forecast: each for each in found.forecasts}
     return element(
         "section",
         element("h2", "Filter limits: how the answers move as each limit moves"),
         *(element("p", said, class_="remark") for said in limit_sentences(found)),
-        *(_limit(limit, units) for limit in found.filter_limits),
+        *(_limit(limit, forecasts) for limit in found.filter_limits),
         id="limits",
     )
 
 
-def _limit(limit: FilterLimit, units: dict[str, str]) -> Html:
+def _limit(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> Html:
     heading = element("h3", f"{limit.filter}: {limit.relation} {number_text(limit.limit)} ({limit.cell})")
     if not limit.points:
         said = "The accepted trials do not say by how much it could be moved."
         return element("article", heading, element("p", said))
     flow, answers = Flow(), Flow()
     write_acceptance(flow, limit)
-    write_answers(answers, limit)
+    write_answers(answers, limit, forecasts)
     numbers = element("details", element("summary", "The answers at each limit"), answers.html)
-    drawings = element("div", *_answer_charts(limit, units), element("div", flow.html), class_="drawings")
+    drawings = element("div", *_answer_charts(limit, forecasts), element("div", flow.html), class_="drawings")
     return element("article", heading, drawings, numbers, class_="sensitivity")
 
 
-def _answer_charts(limit: FilterLimit, units: dict[str, str]) -> Iterator[Html]:
-    """Yield a chart for the forecasts of each unit: changes in different units have no common axis."""
-    by_unit: dict[str, list[int]] = {}
+def _answer_charts(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> Iterator[Html]:
+    """Yield a chart for the forecasts of each unit and kind: changes in different units have no common axis."""
+    alike: dict[tuple[str, Form], list[int]] = {}
     for index, slope in enumerate(limit.slopes):
-        by_unit.setdefault(units[slope.forecast], []).append(index)
-    for unit, indexes in by_unit.items():
-        yield _figure(limit_chart(limit, indexes, unit), moved_caption(limit))
+        each = forecasts[slope.forecast]
+        form = replace(each.form, report_to=None)
+        alike.setdefault((each.change_units, form if any(form.affixes) else PLAIN), []).append(index)
+    for (unit, form), indexes in alike.items():
+        shown = forecasts[limit.slopes[indexes[0]].forecast].change_form if form != PLAIN else PLAIN
+        yield _figure(limit_chart(limit, indexes, unit, shown), moved_caption(limit))

@@ -5,6 +5,7 @@ The charts of all limits come first and are printed; below them each limit has i
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import number_text
@@ -25,8 +26,13 @@ from xlmc.outputs.sheets.styles import bounds
 if TYPE_CHECKING:
     from xlsxwriter.workbook import Workbook
 
-    from xlmc.analysis.studies.sensitivity import FilterLimit, LimitAnswer, LimitPoint, Sensitivities
-    from xlmc.montecarlo.statistics import Estimate
+    from xlmc.analysis.studies.sensitivity import (
+        FilterLimit,
+        ForecastSensitivity,
+        LimitAnswer,
+        LimitPoint,
+        Sensitivities,
+    )
     from xlmc.outputs.sheets.page import Page
 
 __all__ = ["WIDTHS", "limit_sentences", "moved_caption", "write_acceptance", "write_answers", "write_limits"]
@@ -45,7 +51,7 @@ def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) ->
     page.title("Filter limits: how the answers move as each limit moves", name)
     for sentence in (*limit_sentences(found), _PRINTED):
         page.wide(sentence, "remark", CHARTED)
-    units = {f.forecast: f.units for f in found.forecasts}
+    forecasts = {each.forecast: each for each in found.forecasts}
     page.row += 1
     top, drawn = page.row, sum(bool(limit.points) for limit in found.filter_limits)
     for _ in range(0, drawn, 2):
@@ -54,7 +60,7 @@ def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) ->
     printed = page.row
     charts: list[Captioned] = []
     for limit in found.filter_limits:
-        charts += _write_limit(page, book, limit, units)
+        charts += _write_limit(page, book, limit, forecasts)
     page.row = top
     place_rows(page, charts)
     page.set_up_printing(name, printed=printed, columns=(0, CHARTED))
@@ -78,7 +84,9 @@ def limit_sentences(found: Sensitivities) -> list[str]:
     return said
 
 
-def _write_limit(page: Page, book: Workbook, limit: FilterLimit, units: dict[str, str]) -> list[Captioned]:
+def _write_limit(
+    page: Page, book: Workbook, limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]
+) -> list[Captioned]:
     """Write a limit's tables, and the chart of the shares above them; that of the changes is returned, for the top."""
     page.heading(f"{limit.filter}: {limit.relation} {number_text(limit.limit)} ({limit.cell})")
     if not limit.points:
@@ -88,11 +96,11 @@ def _write_limit(page: Page, book: Workbook, limit: FilterLimit, units: dict[str
     page.row += CHART_ROWS + 1
     acceptance = write_acceptance(page, limit)
     page.row += 1
-    tables = write_answers(page, limit)
+    tables = write_answers(page, limit, forecasts)
     bottom, page.row = page.row, top
     place_rows(page, [_acceptance_chart(book, limit, acceptance)])
     page.row = bottom
-    return [_moved_chart(book, limit, tables, units)] if tables else []
+    return [_moved_chart(book, limit, tables, forecasts)] if tables else []
 
 
 def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
@@ -125,7 +133,7 @@ def _tighter_or_looser(value: float, limit: FilterLimit) -> str:
     return "looser" if looser else "tighter"
 
 
-def write_answers(page: Page, limit: FilterLimit) -> list[TableAt]:
+def write_answers(page: Page, limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> list[TableAt]:
     """Write every forecast at every value of the limit; where each forecast's rows stand is returned."""
     header = page.row
     headers = [
@@ -148,26 +156,32 @@ def write_answers(page: Page, limit: FilterLimit) -> list[TableAt]:
         first = page.row
         now = next(point.answers[index] for point in limit.points if point.limit == limit.limit)
         for point in limit.points:
-            page.line(_answer(slope.forecast, point.limit, point.answers[index], now))
+            page.line(_answer(forecasts[slope.forecast], point.limit, point.answers[index], now))
         tables.append(TableAt(page.name, header, first, page.row - 1))
     return tables
 
 
-def _answer(name: str, limit: float, answer: LimitAnswer, now: LimitAnswer) -> list[Shown]:
+def _answer(forecast: ForecastSensitivity, limit: float, answer: LimitAnswer, now: LimitAnswer) -> list[Shown]:
     width = now.high.value - now.low.value
-    estimates: tuple[Estimate, ...] = (answer.mean, answer.change, answer.low, answer.high)
     looks = ("second number", "second error") if answer is now else ("number", "error")
-    shown = [each for estimate in estimates for each in cells.estimate(estimate, *looks, like=now.mean)]
+    shown = [
+        each
+        for found in (answer.mean, answer.change, answer.low, answer.high)
+        for each in cells.estimate(found, *looks, like=now.mean, form=forecast.form, spread=found is answer.change)
+    ]
     part = [
         Shown(None if each is None or width <= 0.0 else each / width, "0.0%", look)
         for each, look in zip((answer.change.value, answer.change.error), looks, strict=True)
     ]
-    return [Shown(name, look="name"), Shown(limit, look=looks[0]), *shown, *part]
+    return [Shown(forecast.forecast, look="name"), Shown(limit, look=looks[0]), *shown, *part]
 
 
-def _moved_chart(book: Workbook, limit: FilterLimit, tables: list[TableAt], units: dict[str, str]) -> Captioned:
-    found = {units[slope.forecast] for slope in limit.slopes}
-    unit = found.pop() if len(found) == 1 else None
+def _moved_chart(
+    book: Workbook, limit: FilterLimit, tables: list[TableAt], forecasts: Mapping[str, ForecastSensitivity]
+) -> Captioned:
+    shown = [forecasts[slope.forecast] for slope in limit.slopes]
+    alike = len({(each.change_units, each.form.affixes) for each in shown}) == 1
+    unit = shown[0].change_units if alike and shown[0].form.factor == 1.0 else None
     axis = "Change of the mean" + (", of the central range" if unit is None else f" ({unit})" if unit else "")
     value, error, number = (_CHANGE, _CHANGE + 1, "General") if unit is not None else (_OF_RANGE, _OF_RANGE + 1, "0%")
     chart = limit_chart(book, tables, "Change of each mean", _across(limit), axis, (0, _LIMIT, value, error), number)

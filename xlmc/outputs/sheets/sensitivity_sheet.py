@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Any, Final
 from xlmc.analysis.studies.sensitivity.influences import MEASURED
 from xlmc.analysis.studies.sensitivity.measures import Noise, noise
 from xlmc.montecarlo.definitions.forms import PLAIN
-from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
@@ -222,7 +221,7 @@ def _base_text(found: ForecastSensitivity) -> str:
 def _change_format(found: ForecastSensitivity) -> str:
     """Return the format of changes of a forecast; of dates they are days."""
     widest = found.bars[0].span if found.bars else 0.0
-    return cells.spread_format(widest, PLAIN if found.form.kind in (Kind.DATE, Kind.YES_NO) else found.form)
+    return cells.spread_format(widest, found.change_form)
 
 
 def _is_bent(found: ForecastSensitivity) -> bool:

@@ -145,8 +145,15 @@ class ForecastSensitivity:
 
     @property
     def change_units(self) -> str:
-        """The units of a change of it; empty where it has none of its own."""
-        return "days" if self.form.kind is Kind.DATE else self.units
+        """The units of a change of it: of dates days, of money its sign; empty where it has none."""
+        if self.form.kind is Kind.DATE:
+            return "days"
+        return self.units or "".join(self.form.affixes).strip()
+
+    @property
+    def change_form(self) -> Form:
+        """How a change of it is written, beside its units."""
+        return PLAIN if self.form.kind in (Kind.DATE, Kind.YES_NO) else self.form
 
     @property
     def base_text(self) -> str:

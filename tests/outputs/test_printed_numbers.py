@@ -1,0 +1,260 @@
+"""Whatever is printed is in the JSON of the same run, to the digits printed: every command, every output.
+
+The book has a forecast of each kind, ranges given by formulas, and values from 1E-9 to 1E12. A number with an error,
+`48,210 ± 870`, must be the value and the error of one estimate in the JSON; a number on a sheet must be one of the JSON
+to the last bits. `NOT_OF_THE_RUN` lists the few that are not numbers of a run.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+import subprocess
+from datetime import date
+from functools import cache
+from html.parser import HTMLParser
+from pathlib import Path
+
+import docx
+import numpy as np
+import openpyxl
+import pytest
+from click.testing import CliRunner
+from kinds_book import write_book
+from workbook_files import add_tables
+
+from xlmc.cli import xlmc
+
+NUMBER = r"[\d,]+(?:\.\d+)?(?:e[+-]\d+)?"
+WITH_ERROR = re.compile(
+    rf"\((?P<far>{NUMBER}) ± (?P<far_error>{NUMBER})\)e(?P<power>[+-]\d+)|"
+    rf"(?<![\d.,])(?P<value>{NUMBER})(?: ?%)? ± \$?(?P<error>{NUMBER})"
+)
+FACTORS = (1.0, 100.0, 24.0, 1440.0, 86_400.0)
+"""What a number is multiplied by: shares in percent; of days hours, minutes and seconds."""
+
+DECISIONS = [
+    ["Name", "Cell", "Low", "High", "Step", "Values", "Units"],
+    ["Order", "=Model!B30", 20, 40, 20, None, "pieces"],
+    ["Price", "=Model!B31", None, None, None, "5; 6", "$"],
+]
+SCENARIOS = [["Name", "Speed in High", "Cost in High"], ["slower", 37, None], ["dearer", None, 300_000]]
+
+NOT_OF_THE_RUN = {
+    *("Model", "Tables", "More"),  # of the book itself
+    "Trials",  # each of them
+    "Certainty",  # ranges that a reader types
+    *("Bins", "Curves", "Numbers"),  # what charts draw
+    "Record",  # settings
+    "Lost to errors in cells",  # the bound of a share that JSON gives as a count
+}
+"""Sheets, and rows by their first cell, that have other numbers than those of JSON."""
+
+
+def write_full_book(path, *, filtered):
+    """The book of `test_kinds`, with decisions, scenarios, and inputs that these change."""
+    book = openpyxl.load_workbook(write_book(path, filtered=filtered))
+    sheet = book["Model"]
+    sheet["B30"], sheet["B31"] = 30, 5
+    sheet["B10"], sheet["B11"] = "=B1^2/10*(1+B30/1000)", "=B2*(1+B1/100)-B30*B31*100"
+    for number in range(40):
+        sheet.cell(number + 1, 8, round(20 + 5 * math.sin(number * 1.7), 3))
+    add_tables(book.create_sheet("More"), {"xlmc_decisions": DECISIONS, "xlmc_scenarios": SCENARIOS})
+    book.save(path)
+    return str(path)
+
+
+COMMANDS = {
+    "simulate": ["simulate", "{filtered}", "-n", "2000", "--scenarios"],
+    "simulate without filters": ["simulate", "{plain}", "-n", "2000", "--sampling", "lhs"],
+    "compare": ["compare", "{plain}", "{filtered}", "-n", "2000", "--no-causes"],
+    "screen": ["screen", "{filtered}", "-n", "1000"],
+    "decide": ["decide", "{filtered}", "-n", "1000"],
+    "uncertainty": [
+        "uncertainty",
+        "{filtered}",
+        "--outer",
+        "40",
+        "--inner",
+        "50",
+        "--uncertain",
+        "Cost in,Start,Share",
+    ],
+    "seek": ["seek", "{filtered}", "--cell", "Model!B11", "--to", "250000", "--by", "Model!B1"],
+    "fit": ["fit", "{plain}!Model!H1:H40"],
+}
+ENDINGS = ("html", "pdf", "docx", "xlsx")
+
+
+@pytest.fixture(scope="module")
+def printed(tmp_path_factory):
+    """The JSON of a command, and the texts of its outputs by ending; each command is run once."""
+    folder = tmp_path_factory.mktemp("printed")
+    books = {
+        name: write_full_book(folder / f"{name}.xlsx", filtered=name == "filtered") for name in ("plain", "filtered")
+    }
+
+    @cache
+    def run(command):
+        stem = folder / command.replace(" ", "-")
+        files = [f"{stem}.{ending}" for ending in ("json", *ENDINGS)]
+        words = [each.format(**books) for each in COMMANDS[command]]
+        outputs = [part for each in files for part in ("-o", each)]
+        found = CliRunner().invoke(xlmc, ["--quiet", *words, *outputs], env={"COLUMNS": "200"})
+        assert found.exit_code in (0, 1), found.output
+        texts = {ending: text_of(Path(f"{stem}.{ending}")) for ending in ENDINGS[:-1]}
+        document = json.loads(Path(files[0]).read_text(encoding="utf-8"))
+        return document, texts | {"terminal": found.output}, Path(f"{stem}.xlsx")
+
+    return run
+
+
+class _Words(HTMLParser):
+    """The words of a page that a reader sees."""
+
+    def __init__(self):
+        super().__init__()
+        self.words, self._hidden = [], 0
+
+    def handle_starttag(self, tag, attrs):
+        self._hidden += tag in ("script", "style")
+
+    def handle_endtag(self, tag):
+        self._hidden -= tag in ("script", "style")
+
+    def handle_data(self, data):
+        if not self._hidden:
+            self.words.append(data)
+
+
+def text_of(path):
+    """All that a file says."""
+    if path.suffix == ".pdf":
+        return subprocess.run(["pdftotext", path, "-"], capture_output=True, check=True, encoding="utf-8").stdout
+    if path.suffix == ".html":
+        words = _Words()
+        words.feed(path.read_text(encoding="utf-8"))
+        return " ".join(words.words)
+    document = docx.Document(str(path))
+    cells = (cell.text for table in document.tables for row in table.rows for cell in row.cells)
+    return "\n".join([*(each.text for each in document.paragraphs), *cells])
+
+
+def estimates_in(value):
+    """Yield the value and the error of each estimate in a document."""
+    if isinstance(value, dict):
+        if isinstance(value.get("value"), int | float) and isinstance(value.get("error"), int | float):
+            yield float(value["value"]), float(value["error"])
+        for name, error in value.get("standard_errors", {}).items():
+            yield value["parameters"][name], float("nan") if error is None else error
+        for each in value.values():
+            yield from estimates_in(each)
+    elif isinstance(value, list):
+        for each in value:
+            yield from estimates_in(each)
+
+
+def numbers_in(value):
+    """Yield all numbers of a document."""
+    if isinstance(value, dict | list):
+        for each in value.values() if isinstance(value, dict) else value:
+            yield from numbers_in(each)
+    elif isinstance(value, int | float) and not isinstance(value, bool):
+        yield float(value)
+
+
+def read(text, power):
+    """Read a printed number: itself, and half a unit of its last digit, zeros before the point not being digits."""
+    mantissa, _, exponent = text.replace(",", "").partition("e")
+    decimals = len(mantissa.partition(".")[2])
+    zeros = 0 if decimals else len(mantissa) - len(mantissa.rstrip("0") or "0")
+    scale = 10.0 ** (int(exponent or 0) + int(power or 0))
+    return float(mantissa) * scale, 0.5001 * scale * 10.0 ** (zeros - decimals)
+
+
+MOMENT = re.compile(r"(?:(?P<day>\d{4}-\d\d-\d\d)|(?P<hours>\d+):(?P<minutes>\d\d)) ± (?P<error>[\d.,]+) ")
+
+
+def told(text):
+    """Yield each number with an error that a text tells: the two, half a unit of each, the words, and in what units
+    the error may be, beside those of the number.
+
+    A day is told without its time, and a time without its seconds.
+    """
+    text = re.sub(r"\s+", " ", text)
+    for found in MOMENT.finditer(text):
+        if found["day"]:
+            value, unit = float((date.fromisoformat(found["day"]) - date(1899, 12, 30)).days), 1.0
+        else:
+            value, unit = (int(found["hours"]) + int(found["minutes"]) / 60.0) / 24.0, 1.0 / 1440.0
+        yield value + unit / 2.0, unit / 2.0 + 1e-5, *read(found["error"], None), found[0], FACTORS
+    text = MOMENT.sub(" ", text)
+    for found in WITH_ERROR.finditer(text):
+        power = found["power"]
+        if power is None and found[0].find("%") < 0 and text[found.start() - 1 : found.start()] == "(":
+            continue  # a line of a narrow column, whose power of ten stands in the next
+        value, half = read(found["value"] or found["far"], power)
+        yield value, half, *read(found["error"] or found["far_error"], power), found[0], (1.0,)
+
+
+@pytest.mark.parametrize("output", ["terminal", "html", "pdf", "docx"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_number_with_its_error_is_an_estimate_of_the_json(printed, command, output):
+    document, texts, _ = printed(command)
+    known = np.array(list(estimates_in(document))).reshape(-1, 2)
+    values, errors = np.concatenate([known * factor for factor in FACTORS]).T
+    lost = []
+    for value, half, error, half_error, words, units in told(texts[output]):
+        at_value = np.abs(np.abs(values) - value) <= half + 1e-9 * value
+        at_error = [np.abs(unit * errors - error) <= half_error + 1e-9 * error for unit in units]
+        if not np.any(at_value & np.any(at_error, axis=0)):
+            lost.append(words)
+    assert not lost
+    assert command == "seek" or texts[output].count("±") > 5
+
+
+def derived(document):
+    """Yield the numbers of sheets that follow from those of the JSON."""
+    best = min((each["aic"] for each in document.get("fits", ())), default=0.0)
+    yield from (each["aic"] - best for each in document.get("fits", ()))
+    if "sensitivity" not in document:
+        return
+    for each in document["sensitivity"]["forecasts"]:
+        answers = (answer for bar in each["bars"] for answer in bar["answers"] if answer is not None)
+        yield from (answer - (each["base"] or 0.0) for answer in answers)
+    for limit in document["sensitivity"]["filter_limits"]:
+        now = next(point["answers"] for point in limit["points"] if point["limit"] == limit["limit"])
+        widths = {each["forecast"]: each["high"]["value"] - each["low"]["value"] for each in now}
+        for answer in (answer for point in limit["points"] for answer in point["answers"]):
+            width = widths[answer["forecast"]]
+            yield from (answer["change"][key] / width for key in ("value", "error") if width)
+    for each in document["forecasts"]:
+        yield from (round(text["share"]["value"] * document["trials"]["accepted"]) for text in each["categories"])
+
+
+def is_close(number, known, half):
+    """Whether a number is one of `(n,)` ascending known ones, half a unit of its last digit or less apart."""
+    at = known.searchsorted([abs(number) - half, abs(number) + half])
+    return at[0] < at[1]
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_number_on_a_sheet_is_a_number_of_the_json(printed, command):
+    """Those of result sheets to the last bits, those of studies, which are texts made numbers, to their digits."""
+    document, _, path = printed(command)
+    is_run = command.startswith("simulate")
+    found = [*numbers_in(document), *derived(document)]
+    factors = (1.0,) if is_run else FACTORS
+    known = np.sort(np.abs(np.outer(found, factors)).ravel())
+    lost = []
+    for sheet in openpyxl.load_workbook(path):
+        for row in sheet.iter_rows() if sheet.title not in NOT_OF_THE_RUN else ():
+            if row[0].value in NOT_OF_THE_RUN:
+                continue
+            for cell in row:
+                if isinstance(cell.value, int | float) and not isinstance(cell.value, bool):
+                    half = 1e-11 * abs(cell.value) if is_run else read(repr(abs(cell.value)), None)[1]
+                    if not is_close(cell.value, known, half + 1e-300):
+                        lost.append((sheet.title, cell.coordinate, cell.value))
+    assert not lost

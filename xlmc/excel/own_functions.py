@@ -192,6 +192,9 @@ def _module(source: bytes, path: str) -> ModuleType:
     try:
         loader.exec_module(module)
     except SyntaxError as error:
+        if error.lineno is None:  # no text at all, such as a workbook
+            hint = "Name a file of Python: --functions my_functions.py"
+            raise WorkbookError(f"the file is not Python: {error.msg}", where=path, hint=hint) from error
         message = f"the file is not Python: {error.msg} (line {error.lineno})"
         raise WorkbookError(message, where=path, hint="Correct that line") from error
     except Exception as error:  # whatever a person's code raises is told in words

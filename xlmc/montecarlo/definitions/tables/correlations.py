@@ -61,8 +61,12 @@ def _of_matrix(
         column: findings.attempt(_named, names, heading, matrix.heading_cell(column)) for heading, column in headings
     }
     values: dict[frozenset[str], tuple[Parameter, Cell]] = {}
+    seen: dict[str, Cell] = {}
     for row in rows_of(workbook, [matrix], (), [heading for heading, _ in matrix.columns.values()], findings):
         name = findings.attempt(_assumption_named, row, first[0], names)
+        if name is not None and seen.setdefault(name, row.where) != row.where:
+            findings.problem(f"Two rows are named {name!r}, this one and {seen[name]}", row.where, "Correct one name")
+            continue
         for (heading, _), other in zip(headings, columns.values(), strict=True):
             if name is None or other is None or not row.filled(heading):
                 continue

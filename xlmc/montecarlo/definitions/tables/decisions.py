@@ -18,11 +18,15 @@ from xlmc.montecarlo.definitions.tables.identity import Claims, identify
 from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
 from xlmc.montecarlo.definitions.tables.table_rows import Row, number, optional_text, rows_of
 from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.distributions.spelling import nearest, plain
 
 __all__ = ["read_decisions", "values_between"]
 
 _KNOWN = ("Name", "Value", "Cell", "Low", "High", "Step", "Values", "Units")
 _BY_RANGE = ("Low", "High", "Step")
+
+_SLIP: Final = 0.7
+"""Likeness above which a column that is not read may be meant for one that a row lacks."""
 
 _STEPS: Final = 4
 """Steps from Low to High where Step is blank."""
@@ -52,9 +56,10 @@ def _decision(row: Row, computed: Computed, claims: Claims, findings: Findings) 
     before = len(findings.problems)
     identity = identify(row, claims, findings)
     if identity is not None and computed.at_all(identity[1]):
-        what = "a formula, an assumption or a cell that is solved for"
-        message = f"The cell of the decision {identity[0]!r}, {identity[1]}, is {what}"
-        findings.problem(message, row.where, "Decide on a cell that holds a number")
+        formula = computed.by_formula(identity[1])
+        what = "holds a formula" if formula else "is drawn or solved for in each trial"
+        hint = "Decide on a cell that holds a number" if formula else "Decide on another cell, or take that row out"
+        findings.problem(f"The cell of the decision {identity[0]!r}, {identity[1]}, {what}", row.where, hint)
     values = findings.attempt(_values, row)
     units = findings.attempt(optional_text, row, "Units") or ""
     if len(findings.problems) > before or identity is None or values is None:
@@ -78,13 +83,33 @@ def _values(row: Row) -> tuple[float, ...]:
         return _listed(row)
     low, high, step = (number(row, heading) for heading in _BY_RANGE)
     if low is None or high is None:
-        message = "The decision has no values"
-        raise DefinitionError(message, where=row.where, hint="Fill in Low and High, or Values such as 10; 20; 50")
+        raise _no_values(row)
     step = (high - low) / _STEPS if step is None else step
     if not low < high or not step > 0.0:
         message = f"From {show(low)} to {show(high)} in steps of {show(step)} there are no values"
         raise DefinitionError(message, where=row.cell("Low"), hint="Give Low below High, and Step above 0")
     return values_between(low, high, step, row.cell("Step") if row.filled("Step") else row.where)
+
+
+def _no_values(row: Row) -> DefinitionError:
+    """Say which column may be misspelt, or which cell is blank, where a row has no values."""
+    hint = "Fill in Low and High, or Values such as 10; 20; 50"
+    for heading in ("Low", "High", "Values"):
+        slip = None if row.has(heading) else nearest(heading, _notes(row), _SLIP)
+        if slip is not None:
+            message = f"The column {slip!r} is not read: did you mean {heading}?"
+            where = row.table.heading_cell(row.table.columns[plain(slip)][1])
+            return DefinitionError(message, where=where, hint=f"Rename the column {heading}")
+    if row.filled("Low") or row.filled("High"):
+        blank = "High" if row.filled("Low") else "Low"
+        where = row.cell(blank) if row.has(blank) else row.where
+        return DefinitionError(f"The decision has no {blank}", where=where, hint=hint)
+    return DefinitionError("The decision has no values", where=row.where, hint=hint)
+
+
+def _notes(row: Row) -> list[str]:
+    known = {plain(heading) for heading in _KNOWN}
+    return [heading for heading in row.headings if plain(heading) not in known]
 
 
 def values_between(low: float, high: float, step: float, where: Cell) -> tuple[float, ...]:

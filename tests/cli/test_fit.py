@@ -220,3 +220,44 @@ def test_a_row_of_values_is_one_quantity(xlmc, tmp_path):
     book.active.append(FRICTION[:20].tolist())
     book.save(tmp_path / "row.xlsx")
     assert "fitted together" not in xlmc("fit", tmp_path / "row.xlsx", "A1:T1").err
+
+
+def test_columns_of_a_file_are_fitted_with_their_correlations_into_a_book(xlmc, tmp_path):
+    rng = np.random.default_rng(3)
+    friction = rng.normal(0.7, 0.05, 50)
+    lines = [f"{mu:.4f};{30 + 60 * (mu - 0.7) + rng.normal(0, 2):.3f};{kind}".replace(".", ",")
+             for mu, kind in zip(friction, rng.choice(["dry", "wet"], 50), strict=True)]  # fmt: skip
+    data, book = tmp_path / "data.csv", tmp_path / "fitted.xlsx"
+    data.write_text("\n".join(["Friction;Speed;Surface", *lines]), encoding="utf-8")
+    outcome = xlmc("fit", data, "--uncertain", "--into", book, "-o", tmp_path / "found.html", "--json")
+    assert outcome.code == 0, outcome.err
+    found = json.loads(outcome.out)
+    assert [each["name"] for each in found["columns"]] == ["Friction", "Speed", "Surface"]
+    assert set(found["columns"][2]["shares"]) == {"dry", "wet"}
+    assert found["pairs"][0]["rank_correlation"]["value"] > 0.6
+    names = [row[0].value for row in openpyxl.load_workbook(book)["Fitted"].iter_rows(min_row=6)]
+    assert "Friction: Mean" in names
+    assert "Speed" in names
+    again = xlmc("fit", data, "Sp*", "--into", book)
+    assert again.code == 2
+    assert "Two rows define the assumption 'Speed'" in again.err
+
+
+def test_columns_of_a_range_have_headings(xlmc, tmp_path):
+    made = openpyxl.Workbook()
+    for row in [["a", "b", "c"], *([n + 0.5, 2 * n + (n % 3), "x" if n % 2 else "y"] for n in range(30))]:
+        made.active.append(row)
+    path = tmp_path / "data.xlsx"
+    made.save(path)
+    outcome = xlmc("fit", f"{path}!A1:C31", "--columns")
+    assert outcome.code == 0, outcome.err
+    assert "How the columns hang together" in outcome.out
+    assert "c: shares of its texts" in outcome.out
+    for given, message in (
+        ((f"{path}!A1:C31", "--uncertain"), "--uncertain is for several columns"),
+        ((f"{path}!A1:C1", "--columns"), "the range has one row"),
+        ((f"{path}!A1:C31", "--columns", "--name", "x"), "are for one column alone"),
+    ):
+        outcome = xlmc("fit", *given)
+        assert outcome.code == 2
+        assert message.casefold() in outcome.err.casefold()

@@ -60,6 +60,18 @@ _BOOK_AND_RANGE = re.compile(r"(?P<book>.+\.(?:xlsx|xlsm|xltx|xltm|xlsb?|ods))!(
     help="SOURCE, a CSV file or a range, holds crash tests: copy them into the sheet Stiffness of --into, as tests of"
     " vehicle 1 or 2.",
 )
+@click.option(
+    "--columns",
+    is_flag=True,
+    help="Fit each column of RANGE, whose first row has the headings, for itself, and how they hang together. So are "
+    "the columns of a file of comma-separated values (.csv), where RANGE names headings, joined by commas.  [default "
+    "there: all]",
+)
+@click.option(
+    "--uncertain",
+    is_flag=True,
+    help="With several columns: parameters become assumptions of their own, marked Uncertain, from a bootstrap.",
+)
 @study_options(STUDY)
 def fit(
     source: str,
@@ -70,12 +82,14 @@ def fit(
     distribution: str | None,
     into: Path | None,
     tests: str | None,
+    columns: bool,
+    uncertain: bool,
     output: tuple[Path, ...],
     also: tuple[Path, ...],
     overwrite: bool,
     as_json: bool,
 ) -> None:
-    """Rank the distributions that describe the values in BOOK!RANGE, or in BOOK RANGE.
+    """Rank the distributions that describe the values in BOOK!RANGE, or in BOOK RANGE; or those of several columns.
 
     RANGE is a range of cells, with its sheet where the workbook has several (data.xlsx!Sheet1!A2:A50), a defined name,
     or a column of a table (Tests[Friction]).
@@ -83,6 +97,7 @@ def fit(
     import numpy as np
 
     from xlmc.analysis.studies import fitting
+    from xlmc.cli import fit_columns as several
     from xlmc.cli import fit_into
     from xlmc.excel.workbook.printable import label
     from xlmc.outputs.document.parts import blocks_of
@@ -91,6 +106,21 @@ def fit(
     if tests is not None:
         _copy_tests(source, cells, int(tests), into, as_json=as_json)
         return
+    if columns or Path(source).suffix.casefold() in several.CSV:
+        if name or distribution:
+            raise click.UsageError("--name and --distribution are for one column alone.")
+        if Path(source).suffix.casefold() in several.CSV:
+            path = Path(source)
+            read, where = several.columns_of_csv(path, cells), path.name
+        else:
+            path, reference = _book_and_range(source, cells)
+            read, where = several.columns_of_range(path, reference)
+        files = Files((*output, *also), [path] if into is None else [path, into], overwrite=overwrite)
+        files.check()
+        several.fit_columns(read, where, files, kind=kind, by=by, uncertain=uncertain, into=into, as_json=as_json)
+        return
+    if uncertain:
+        raise click.UsageError("--uncertain is for several columns: give --columns, or a .csv file.")
     book, reference = _book_and_range(source, cells)
     name = label(name.strip())
     if into is not None and not name:

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from xlmc.excel.workbook.workbook import Workbook
     from xlmc.montecarlo.definitions.tables.new_row import RowEdit
 
-__all__ = ["Edited", "prepare", "write"]
+__all__ = ["Edited", "prepare", "refuse_new_problems", "write"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +51,7 @@ def prepare(path: Path, name: str, fitted: Fitted, base: float, source: str) -> 
     parameters = {heading: float(text) for heading, text in parameter_texts(fitted).items()}
     row = row_edit(workbook, name, fitted.name, parameters, rounded_value(fitted, base), source)
     data = checked_bytes(_parts(workbook, row), workbook.parts)
-    _refuse_new_problems(workbook, read_workbook(data, path.name))
+    refuse_new_problems(workbook, read_workbook(data, path.name))
     return Edited(path, row, data, workbook.sha256)
 
 
@@ -82,7 +82,7 @@ def _parts(workbook: Workbook, row: RowEdit) -> dict[str, bytes]:
     return parts
 
 
-def _refuse_new_problems(before: Workbook, after: Workbook) -> None:
+def refuse_new_problems(before: Workbook, after: Workbook) -> None:
     """Return what the workbook did not have before: such as parameters outside the cutoffs in the row."""
     from xlmc.engine.engines import ENGINES
     from xlmc.montecarlo.definitions.definitions_reader import read_definitions

@@ -97,7 +97,7 @@ def read_value_rows(path: Path, book: Workbook) -> ValueRows:
     Raises:
         WorkbookError: the file cannot be read, a heading is no cell, or a value is none; told of the line.
     """
-    lines = list(_lines(path))
+    lines = list(lines_of(path))
     if not lines:
         raise WorkbookError("the file holds no rows", where=path, hint="Write cells as headings, and rows of values")
     (_, headings), *body = lines
@@ -159,7 +159,7 @@ def _typed(path: Path, line: int, book: Workbook, place: str | Cell, value: str)
         raise WorkbookError(f"line {line}: {error}", where=path) from None
 
 
-def _lines(path: Path) -> Iterator[tuple[int, list[str]]]:
+def lines_of(path: Path) -> Iterator[tuple[int, list[str]]]:
     """Yield the lines that hold anything, with their numbers; parted by commas, semicolons or tabs."""
     try:
         text = path.read_text(encoding="utf-8-sig")

@@ -47,6 +47,9 @@ _CHECKED: Final = 256
 
 _ALIKE: Final = 1e-9
 
+_MOST_BYTES: Final = 1 << 26
+"""Bytes of draws that are kept for the next candidates, for each size of blocks and each thread."""
+
 
 class CandidateTrials:
     """Computes forecasts of candidates; for one thread, which shares the work among others.
@@ -276,8 +279,8 @@ class _HeldDraws:
                 draws[name] = _HeldDraw.instead_of(draws[name], lambda held=held: held.value)  # type: ignore[misc]
         self._sampler = model.sampler(seed, block, engine, draws=draws)
         self._again = len(model.needed.stages) < 2
-        self._start: int | None = None
-        self._drawn: dict[str, Floats] = {}
+        self._stored: dict[int, dict[str, Floats]] = {}
+        self._most = max(1, _MOST_BYTES // (8 * block * max(len(draws), 1)))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -291,10 +294,14 @@ class _HeldDraws:
 
     def draw(self, start: int) -> dict[str, Floats]:
         """See `Sampler`. Draws that depend on no decision stay from candidate to candidate."""
-        if not self._again or start != self._start:
-            self._drawn, self._start = self._sampler.draw(start), start
-        else:
-            for name, held in self._values.items():
-                if name in self._drawn:
-                    self._drawn[name][:] = held.value
-        return self._drawn
+        if not self._again:
+            return self._sampler.draw(start)
+        drawn = self._stored.get(start)
+        if drawn is None:
+            drawn = {name: values.copy() for name, values in self._sampler.draw(start).items()}
+            if len(self._stored) < self._most:
+                self._stored[start] = drawn
+        for name, held in self._values.items():
+            if name in drawn:
+                drawn[name][:] = held.value
+        return drawn

@@ -159,7 +159,7 @@ def optimise(
         subject_to: what is required, such as `P5 of NPV >= 0`, or `A + B <= 10` of decisions.
         decisions: names of those that are chosen, joined by commas, `*` for any letters; all where there are none.
         indifference: a difference of the goal that does not matter; by default 1 % of the difference between the best
-            and a middling candidate, or the error of the goal in a run if that is more.
+            and a middling candidate, or two errors of the goal in a run if that is more.
         runs: trials that the search may take, as a multiple of those of a run.
         trials: of a run; as in `Model.simulate`, like what follows.
         seed: of the run; the search has another one.

@@ -75,7 +75,7 @@ def leader(tried: Tried) -> Standing:
 
 def indifference_of(tried: Tried, first: Sequence[Values], n: int, trials: int) -> float:
     """Return a difference too small to matter: 1 % of that between the best candidate and a middling one of the first
-    ones, and not less than the error of the best one's goal in a run.
+    ones, and not less than two errors of the best one's goal in a run.
     """
     known = tried.standings(first, n)
     meeting = [each.goal.value for each in known if each.meets] or [each.goal.value for each in known]
@@ -83,7 +83,7 @@ def indifference_of(tried: Tried, first: Sequence[Values], n: int, trials: int) 
     if not values.size:
         return 0.0
     error = known[0].goal.error * math.sqrt(n / trials)
-    return max(_SPREAD_SHARE * float(values.max() - np.median(values)), error if math.isfinite(error) else 0.0)
+    return max(_SPREAD_SHARE * float(values.max() - np.median(values)), 2.0 * error if math.isfinite(error) else 0.0)
 
 
 def race(tried: Tried, indifference: float, trials: int, tell: Callable[[str], None]) -> None:

@@ -1,0 +1,315 @@
+"""How `xlmc fit` fits several columns: those of a file of comma-separated values, or of a range with headings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import click
+
+from xlmc.cli.study_output import give_out
+from xlmc.cli.terminal import say
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.fitting.columns import Fits
+    from xlmc.outputs.document.parts import Block, Table
+    from xlmc.outputs.study_report import Files, StudyReport
+
+__all__ = ["CSV", "columns_of_csv", "columns_of_range", "fit_columns"]
+
+CSV = (".csv", ".tsv", ".txt")
+
+_BLANK = ("", "na", "n/a", "nan", "null", "-")
+
+
+def fit_columns(
+    columns: Mapping[str, Sequence[float | str | None]],
+    source: str,
+    files: Files,
+    *,
+    kind: str | None,
+    by: str,
+    uncertain: bool,
+    into: Path | None,
+    as_json: bool,
+) -> None:
+    """Fit the columns, give out what was found, and write it into a workbook.
+
+    Args:
+        columns: heading -> its cells.
+        source: where they stand.
+        files: to write the report to.
+        kind: of all numbers.
+        by: what ranks the families.
+        uncertain: whether parameters become assumptions of their own, by a bootstrap.
+        into: the workbook that gets the sheet; it is made where there is none.
+        as_json: print the result as JSON.
+
+    Raises:
+        Exit: some column has too few values to tell families apart.
+    """
+    from xlmc.analysis.studies import fitting
+    from xlmc.analysis.studies.fitting.columns import BOOTSTRAPS
+    from xlmc.analysis.studies.fitting.columns import fit_columns as study
+
+    book = None if into is None else _book(into)
+    found = study(columns, kind=kind, by=by, bootstraps=BOOTSTRAPS if uncertain else 0)
+    report = _report(found, source)
+    data = None if into is None else _data(book, found, source)
+    written = give_out(report, files.writers(report), as_json, [f"{report.below}.", *report.blocks])
+    if into is not None and data is not None:
+        _write(into, data, "" if book is None else book.sha256)
+        if not as_json:
+            rows = sum(each.best is not None for each in found.columns)
+            say(f"Written: {rows} distributions and {len(found.pairs)} rank correlations on a sheet of {into}")
+    for caution in _cautions(found):
+        say(f"warning: {caution}", err=True)
+    written.check()
+    if any(each.fitting is not None and each.fitting.n < fitting.FEW for each in found.columns):
+        raise click.exceptions.Exit(1)
+
+
+def _book(path: Path):  # type: ignore[no-untyped-def]  # a Workbook, whose module takes time to import
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.excel.workbook.target import refuse_into_other_format
+    from xlmc.excel.workbook.writer import refuse_if_open
+
+    if path.suffix.casefold() not in (".xlsx", ".xlsm"):
+        raise click.UsageError(f"--into {path.name}: name a workbook that ends in .xlsx or .xlsm.")
+    if not path.exists():
+        return None
+    refuse_if_open(path)
+    book = read_workbook(path)
+    refuse_into_other_format(path)
+    return book
+
+
+def _data(book, found: Fits, source: str) -> bytes:  # type: ignore[no-untyped-def]  # as above
+    """Return the workbook with the sheet.
+
+    Raises:
+        DefinitionError: it would have a mistake that it had not.
+    """
+    from xlmc.cli.fit_into import refuse_new_problems
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.outputs.prepared.fitted_sheet import with_fits
+
+    data = with_fits(book, found, source)
+    if book is not None:
+        refuse_new_problems(book, read_workbook(data, book.name))
+    return data
+
+
+def _write(path: Path, data: bytes, sha256: str) -> None:
+    from xlmc.excel.workbook.target import Target, refuse_into_source
+    from xlmc.excel.workbook.writer import write_workbook
+
+    if sha256:
+        write_workbook(path, data, lambda: refuse_into_source(path, sha256, "Fit again"))
+    else:
+        write_workbook(path, data, Target(path, "", False).check)
+
+
+def columns_of_csv(path: Path, wanted: str | None) -> dict[str, list[float | str | None]]:
+    """Read the columns of a file, by their headings; a column in which every cell is a number or blank has numbers.
+
+    Args:
+        path: of the file, whose first line has the headings; parted by commas, semicolons or tabs.
+        wanted: headings joined by commas, `*` for any letters; all where None.
+
+    Raises:
+        WorkbookError: the file cannot be read, or a line has more cells than there are headings.
+        SimulationError: there is no column of a heading.
+    """
+    from xlmc.errors import WorkbookError
+    from xlmc.excel.workbook.typed_values import lines_of
+
+    lines = list(lines_of(path))
+    if len(lines) < 2:
+        raise WorkbookError("the file has no values", where=path, hint="Its first line has the headings")
+    heads = [each.strip() for each in lines[0][1]]
+    for number, cells in lines[1:]:
+        if len(cells) > len(heads):
+            message = f"line {number} has {len(cells)} cells, and there are {len(heads)} headings"
+            raise WorkbookError(message, where=path, hint="Put texts with commas in quotation marks")
+    semicolons = path.read_text(encoding="utf-8-sig").partition("\n")[0].count(";") > 0
+    texts = {
+        head: [(cells[at].strip() if at < len(cells) else "") for _, cells in lines[1:]]
+        for at, head in enumerate(heads)
+        if head
+    }
+    return _wanted({head: _typed(cells, comma=semicolons) for head, cells in texts.items()}, wanted)
+
+
+def _typed(cells: Sequence[str], *, comma: bool) -> list[float | str | None]:
+    """Return cells as numbers, and None for blank ones; as texts if one of them is no number."""
+    known = [None if each.casefold() in _BLANK else each for each in cells]
+    try:
+        return [None if each is None else float(each.replace(",", ".") if comma else each) for each in known]
+    except ValueError:
+        return [*known]
+
+
+def columns_of_range(
+    book: Path, reference: str, wanted: str | None = None
+) -> tuple[dict[str, list[float | str | None]], str]:
+    """Read the columns of a range whose first row has their headings, or of a table; and where they stand.
+
+    Raises:
+        DefinitionError: there is no such range, it has a single row, or a cell holds an error.
+    """
+    from xlmc.errors import DefinitionError
+    from xlmc.excel.address import Cell
+    from xlmc.excel.workbook.reader import read_workbook
+    from xlmc.montecarlo.definitions.cell_references import area_of_reference
+    from xlmc.montecarlo.definitions.tables.table_rows import as_text
+
+    workbook = read_workbook(book)
+    only_sheet = next(iter(workbook.sheets)) if len(workbook.sheets) == 1 else None
+    area = area_of_reference(workbook, reference, only_sheet, book)
+    if area.rows < 2:
+        raise DefinitionError("the range has one row", where=str(area), hint="Its first row has the headings")
+    found: dict[str, list[float | str | None]] = {}
+    for column in range(area.left, area.right + 1):
+        head = as_text(workbook.content(Cell(area.sheet, area.top, column)).value).strip()
+        cells: list[float | str | None] = []
+        for row in range(area.top + 1, area.bottom + 1):
+            value = workbook.content(Cell(area.sheet, row, column)).value
+            if value is None or value == "":
+                cells.append(None)
+            elif isinstance(value, bool):
+                cells.append(str(value).upper())
+            elif isinstance(value, int | float):
+                cells.append(float(value))
+            elif isinstance(value, str):
+                cells.append(value.strip() or None)
+            else:
+                hint = "Correct it, or leave its row out"
+                raise DefinitionError(
+                    f"the cell holds {as_text(value)}", where=Cell(area.sheet, row, column), hint=hint
+                )
+        if head:
+            found[head] = cells
+        elif any(each is not None for each in cells):
+            where = Cell(area.sheet, area.top, column)
+            raise DefinitionError("the column has no heading", where=where, hint="Type one into this cell")
+    return _wanted(found, wanted), f"{book.name} {area}"
+
+
+def _wanted(columns: dict[str, list[float | str | None]], wanted: str | None) -> dict[str, list[float | str | None]]:
+    from xlmc.analysis.studies.comparison.variations import names_of
+
+    return columns if wanted is None else {name: columns[name] for name in names_of(wanted, [*columns], "column")}
+
+
+def _cautions(found: Fits) -> list[str]:
+    return [
+        f"{each.name}: {caution}."
+        for each in found.columns
+        if each.fitting is not None
+        for caution in each.fitting.cautions
+    ]
+
+
+def _report(found: Fits, source: str) -> StudyReport:
+    from xlmc.outputs.document.parts import blocks_of
+    from xlmc.outputs.study_report import StudyReport
+
+    below = f"{source}: {len(found.columns)} column{'s' * (len(found.columns) != 1)}"
+    title = "Distributions fitted to columns"
+    return StudyReport(title, below, blocks_of(_blocks(found)), "Fit", partial(_as_json, found, source))
+
+
+def _blocks(found: Fits) -> Iterator[str | Block]:
+    from xlmc.outputs.document.parts import Table
+    from xlmc.outputs.summary import share_text
+
+    rows = []
+    for each in found.columns:
+        if each.fitting is None or each.best is None:
+            continue
+        near = [f.name for f in each.fitting.fits[1:] if f.aic - each.best.aic < 2.0]
+        rows.append((each.name, str(each.fitting.n), each.best.name, _parameters(each), ", ".join(near)))
+    if rows:
+        heads = ("Column", "Values", "Distribution", "Parameters", "About as good")
+        yield Table("The best distribution of each column", heads, tuple(rows), (1,))
+    if found.pairs:
+        yield _pairs(found)
+        yield (
+            "Copulas are fitted to the ranks of the two columns; ΔAIC says by how much the Gaussian one, which rank "
+            "correlations stand for, is behind the best. “Turned” means that one goes up as the other goes down."
+        )
+    for each in found.columns:
+        if each.shares:
+            shares = tuple((text, share_text(share)) for text, share in each.shares.items())
+            yield Table(f"{each.name}: shares of its texts", ("Text", "Share"), shares, (1,))
+        elif each.why:
+            yield f"Not fitted: {each.name}: {each.why}."
+
+
+def _parameters(each) -> str:  # type: ignore[no-untyped-def]  # a ColumnFit
+    from xlmc.analysis.studies.fitting import parameter_texts
+    from xlmc.montecarlo.statistics import format_estimate
+
+    parts = []
+    for heading, text in parameter_texts(each.best).items():
+        repeated = (each.repeated or {}).get(heading)
+        error = each.best.errors[heading] if repeated is None else float(repeated.std(ddof=1))
+        value = each.best.parameters[heading]
+        parts.append(f"{heading} {text if not error or error != error else format_estimate(value, error)}")
+    return ", ".join(parts)
+
+
+def _pairs(found: Fits) -> Table:
+    from xlmc.outputs.document.parts import Table
+
+    rows = []
+    for pair in found.pairs:
+        best, *_ = pair.copulas
+        gaussian = next((each for each in pair.copulas if each.name == "Gaussian"), None)
+        behind = "" if gaussian is None else f"{gaussian.aic - best.aic:.1f}"
+        numbers = ", ".join(f"{name} {value:.3g}" for name, value in best.parameters.items())
+        name = f"{best.name}, turned" if best.turned else best.name
+        rows.append((pair.first, pair.second, str(pair.n), repr(pair.correlation), name, numbers, behind))
+    heads = ("First", "Second", "Rows", "Rank correlation", "Best copula", "Its numbers", "ΔAIC of Gaussian")
+    return Table("How the columns hang together", heads, tuple(rows), (2, 3, 6))
+
+
+def _as_json(found: Fits, source: str) -> dict[str, object]:
+    from xlmc.cli.study_output import estimate_json
+
+    return {
+        "source": source,
+        "columns": [
+            {
+                "name": each.name,
+                "values": int(each.values.size),
+                "distribution": None if each.best is None else each.best.name,
+                "parameters": None if each.best is None else dict(each.best.parameters),
+                "bootstrap": {heading: float(values.std(ddof=1)) for heading, values in (each.repeated or {}).items()},
+                "shares": {text: estimate_json(share) for text, share in each.shares.items()},
+                "not_fitted": each.why or None,
+            }
+            for each in found.columns
+        ],
+        "pairs": [
+            {
+                "first": pair.first,
+                "second": pair.second,
+                "rows": pair.n,
+                "rank_correlation": estimate_json(pair.correlation),
+                "copulas": [
+                    {
+                        "name": each.name,
+                        "parameters": dict(each.parameters),
+                        "aic": float(each.aic),
+                        "turned": each.turned,
+                    }
+                    for each in pair.copulas
+                ],
+            }
+            for pair in found.pairs
+        ],
+    }

@@ -15,6 +15,7 @@ BESIDE = {"A1": "Name", "D1": "Value", "A2": "Load", "D2": 12, "D3": 4, "A3": "S
 
 YEARS = {"D2": 2013, "E2": 2014, "F2": 2015, "B3": "Power", "D3": 1.5, "E3": 2.5, "F3": 3.5, "A6": 2013, "A7": 2014}
 PARTNERS = {"B3": "Partner", "C3": "Quantity", "D3": "Amount", "B4": "a", "C4": 2, "D4": 123}
+CLASS = {"B1": "Percent", "C1": "Number", "B2": "of class", "C2": "of students", "A4": "Seeking", "B4": 0.9, "C4": 532}
 NOTED = {"A1": "Name", "B1": "Value", "C1": "Note", "A2": "Load", "B2": 12, "C2": "as built"}
 
 
@@ -27,6 +28,8 @@ NOTED = {"A1": "Name", "B1": "Value", "C1": "Note", "A2": "Load", "B2": 12, "C2"
         (PARTNERS, "C4", "a, Quantity", ""),
         (PARTNERS, "D4", "a, Amount", ""),
         (NOTED, "B2", "Load", ""),
+        (CLASS, "B4", "Seeking, Percent of class", ""),
+        (CLASS, "C4", "Seeking, Number of students", ""),
         (SUMMARY, "E9", "Income", ""),
         (SUMMARY, "F9", "Expenses", ""),
         (SUMMARY, "G9", "Balance", ""),

@@ -111,7 +111,8 @@ def _above(book: Workbook, cell: Cell) -> tuple[str, str]:
         elif not more and _WHOLLY_IN_BRACKETS.match(text) and _text(book, Cell(cell.sheet, row - 1, cell.column)):
             more = f" {text}"
         else:
-            return f"{text}{more}", unit
+            begins = _text(book, Cell(cell.sheet, row - 1, cell.column)) if text[0].islower() and " " in text else ""
+            return f"{begins} {text}{more}".lstrip(), unit
     return more.strip(), unit
 
 

@@ -13,6 +13,7 @@ from xml.etree import ElementTree
 
 import openpyxl
 from live_books import book_of_readings, simple, wide_book
+from openpyxl.worksheet.table import Table
 from simulated import simulated
 from websockets.sync.server import serve
 
@@ -819,6 +820,26 @@ def test_a_kind_of_distribution_is_chosen_by_its_picture(chromium, running, tmp_
     assert page.run(pressed, card) == ["Uniform"]
     page.at_rest(lambda: page.click(page.one("#undo")))
     assert page.run(pressed, card) == ["Normal"]
+
+
+def test_a_correlation_is_typed(chromium, running, tmp_path):
+    book = openpyxl.load_workbook(book_of_readings(tmp_path / "case.xlsx"))
+    sheet = book.create_sheet("Tied")
+    for line in (["First", "Second", "Correlation"], ["t", "v", 0.5]):
+        sheet.append(line)
+    sheet.add_table(Table(displayName="xlmc_correlations", ref="A1:C2"))
+    book.save(tmp_path / "case.xlsx")
+    page = Page(chromium, running(book=tmp_path / "case.xlsx"))
+    card = page.card("t and v")
+    box = page.box(card, "Rank correlation")
+    assert box.get_attribute("value") == "0.50"
+    page.at_rest(lambda: page.type(box, "-0.7"))
+    assert page.changes == ["t and v: correlation 0.5 → -0.7"]
+    page.type(box, "1.5")
+    assert "from -1 to 1" in card.text
+    page.at_rest(lambda: page.click(page.button("As in the workbook", "article[aria-label='t and v']")))
+    assert page.changes == []
+    assert box.get_attribute("value") == "0.50"
 
 
 def test_trials_and_seed_are_typed_and_brought_back(chromium, running, tmp_path):

@@ -39,7 +39,7 @@ from xlmc.outputs.live.jobs import MOVING_TRIALS, Outcome, SupersededError
 from xlmc.outputs.live.kinds import in_kind
 from xlmc.outputs.live.protocol import PageMessage, written
 from xlmc.outputs.live.session import Session
-from xlmc.outputs.live.window_book import assumption_rows, filter_rows
+from xlmc.outputs.live.window_book import assumption_rows, correlation_rows, filter_rows
 
 FRICTION = "Chevrolet post-impact deceleration"
 
@@ -566,6 +566,70 @@ def test_ends_and_moments_stay_where_a_kind_can_keep_them(readings):
     assert in_kind(t, "Uniform") is t
 
 
+@pytest.fixture(scope="module", params=["list", "matrix"])
+def tied(request, tmp_path_factory):
+    """A workbook with a correlation, and the cells that hold it."""
+    folder = tmp_path_factory.mktemp("tied")
+    path = with_column(book_of_readings(folder / "narrow.xlsx"), folder / "case.xlsx", "Frozen")
+    book = openpyxl.load_workbook(path)
+    sheet = book.create_sheet("Tied")
+    if request.param == "list":
+        lines, name, cells = [["First", "Second", "Correlation"], ["t", "v", 0.5]], "xlmc_correlations", ["C2"]
+    else:
+        lines = [["Names", "v", "t"], ["v", 1.0, 0.5], ["t", 0.5, 1.0]]
+        name, cells = "xlmc_correlation_matrix", ["C2", "B3"]
+    for line in lines:
+        sheet.append(line)
+    sheet.add_table(Table(displayName=name, ref=f"A1:C{len(lines)}"))
+    book.save(path)
+    return path, load(path), cells
+
+
+@pytest.mark.parametrize("value", [-0.7, 0.0, 1.0])
+def test_another_correlation_gives_what_the_edited_workbook_gives(tied, tmp_path, monkeypatch, value):
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", moving := 2_000)
+    path, model, cells = tied
+    session = Session(model)
+    settle(session)
+    ((name, shown),) = ((each["name"], each["value"]) for each in correlation_rows(model, session.adjustments))
+    assert shown == 0.5
+    session.receive(change(name, "correlation", value, of="correlation"))
+    session.receive(change("t", "high", 2.6))
+    book = openpyxl.load_workbook(edited(path, tmp_path / "edited.xlsx", {("t", "High"): 2.6}))
+    for cell in cells:
+        book["Tied"][cell] = value
+    book.save(tmp_path / "edited.xlsx")
+    copy = load(tmp_path / "edited.xlsx")
+    found = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    expected = simulate(copy, trials=moving, sampling="mc", evidence=found.settings.evidence)
+    assert found.trial_index.tobytes() == expected.trial_index.tobytes()
+    settle(session)
+    expected = simulate(copy, evidence=None)
+    assert session.rest.trial_index.tobytes() == expected.trial_index.tobytes()
+    for forecast, values in expected.forecasts.items():
+        assert session.rest.forecasts[forecast].tobytes() == values.tobytes(), forecast
+    state = session.at_rest()
+    assert f"{name}: correlation 0.5 → {value:g}" in [each.replace("\u2212", "-") for each in state.changes]
+    assert page_of(state)  # which is of a copy with these changes typed into it, compared to the last bit
+    again = Adjustments.of_json(json.loads(json.dumps(session.adjustments.as_json())))
+    assert again == session.adjustments
+    assert adjustments_of(model.definitions, scenario_of(model.definitions, "kept", again)) == again
+
+    session.receive(change("t", "frozen", True))  # what is frozen is not correlated
+    settle(session)
+    assert page_of(session.at_rest())
+    session.receive(change("t", "frozen", False))
+    session.receive(change("possible", "used", False, of="filter"))
+    settle(session)
+    assert page_of(session.at_rest())
+    session.receive(change(name, "correlation", 1.5, of="correlation"))
+    told = settle(session)
+    (trouble,) = (each["text"] for each in told if each["kind"] == "trouble" and each["text"])
+    assert "must lie between -1 and 1" in trouble
+    session.receive(PageMessage("reset", {"of": "correlation", "name": name}))
+    assert not session.adjustments.correlations
+
+
 def test_trials_and_seed_give_what_a_workbook_with_these_settings_gives(readings, tmp_path, monkeypatch):
     monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", moving := 2_000)
     path, model = readings
@@ -674,7 +738,7 @@ def test_numbers_that_are_no_error_of_a_reading_are_said_and_can_be_mended(readi
 
 def test_files_of_scenarios_before_forecasts_had_handles_are_read():
     old = {"assumptions": {"v": {"mean": 31.0}}, "filters": {"f": {"at_most": 2.0}}}
-    assert Adjustments.of_json(old).as_json() == {**old, "forecasts": {}}
+    assert Adjustments.of_json(old).as_json() == {**old, "forecasts": {}, "correlations": {}}
     with pytest.raises(ValueError, match="none"):
         Adjustments.of_json({"assumptions": {"v": {"mean": "none"}}, "filters": {}})
 

@@ -147,7 +147,9 @@ def _refuse_lacking(scenario: Scenario, lacking: Mapping[str, list[str]], model:
     for name, headings in lacking.items():
         filters = (*model.filters, *model.forecast_filters)
         rows: tuple[Assumption | Filter | Forecast, ...] = (*model.assumptions, *filters, *model.forecasts)
-        where = next((each.row for each in rows if each.name == name), None) or model.definitions.switches[name][0]
+        named = {f"{each.first} and {each.second}": each.row for each in model.definitions.correlations}
+        named |= {each.name: each.row for each in reversed(rows)}
+        where = named.get(name) or model.definitions.switches[name][0]
         if NO_TABLE in headings:
             message = f"The scenario {scenario.name!r} changes {name!r}, which stands in no table"
             hint = "Change its formula or its dialog in Excel, or let xlmc convert write tables first"
@@ -200,5 +202,5 @@ def _definitions(model: CompiledModel) -> list[object]:
     evidence = [(each.name, each.reading, each.sizes) for each in model.evidence if each.used]
     frozen = {a.name for a in model.assumptions if a.frozen}  # whose correlations have no effect, and are not read
     rows = [c for c in model.definitions.correlations if frozen.isdisjoint((c.first, c.second))]
-    correlations = [(c.first, c.second, c.value) for c in rows]
+    correlations = [(c.first, c.second, c.value) for c in rows if c.value]  # one of 0 is none
     return [assumptions, filters, evidence, correlations, model.forecasts]

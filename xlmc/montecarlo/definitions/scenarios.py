@@ -16,6 +16,7 @@ from xlmc.montecarlo.definitions.distribution import Distribution
 __all__ = [
     "Band",
     "Change",
+    "Correlated",
     "Drawn",
     "Frozen",
     "Limits",
@@ -126,6 +127,16 @@ class Stated:
 
 
 @dataclass(frozen=True, slots=True)
+class Correlated:
+    """Two assumptions have another rank correlation than the workbook says; there must be one that it gives."""
+
+    first: str
+    second: str
+    value: float
+    where: Cell | None = None
+
+
+@dataclass(frozen=True, slots=True)
 class Typed:
     """Something else is typed into a cell; into that of a drawn assumption, another base value.
 
@@ -154,7 +165,21 @@ class Tabulated:
     where: Cell | None = None
 
 
-Change = Frozen | Drawn | Range | Band | Numbers | Redrawn | Limits | Switched | Measured | Stated | Typed | Tabulated
+Change = (
+    Frozen
+    | Drawn
+    | Range
+    | Band
+    | Numbers
+    | Redrawn
+    | Limits
+    | Switched
+    | Measured
+    | Stated
+    | Correlated
+    | Typed
+    | Tabulated
+)
 """One change. `where` is the cell that asks for it, for messages; None where a program does."""
 
 

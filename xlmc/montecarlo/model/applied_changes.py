@@ -32,12 +32,13 @@ from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.excel.workbook.workbook import CellValue
-from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Forecast
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Correlation, Definitions, Filter, Forecast
 from xlmc.montecarlo.definitions.distribution import Distribution
 from xlmc.montecarlo.definitions.evidence import SIZES
 from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Change,
+    Correlated,
     Drawn,
     Frozen,
     Limits,
@@ -171,6 +172,12 @@ def changed_cells(model: CompiledModel, definitions: Definitions) -> tuple[dict[
             cells |= found
             if missing:
                 lacking[old.name] = missing
+    for was, is_now in zip(model.definitions.correlations, definitions.correlations, strict=True):
+        if was is not is_now:
+            found, missing = cells_that_change(model.workbook, was, is_now)
+            cells |= found
+            if missing:
+                lacking[f"{was.first} and {was.second}"] = missing
     return cells, lacking
 
 
@@ -190,6 +197,8 @@ def _refuse_no_number(change: Change) -> None:
             what, values = change.evidence, change.values.values()
         case Stated():
             what, values = change.forecast, change.values.values()
+        case Correlated():
+            what, values = change.first, (change.value,)
         case Range():
             what, values = change.assumption, (change.low, change.high)
         case _:
@@ -233,6 +242,7 @@ def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
     filters = {name_key(each.name): each for each in (*model.filters, *model.forecast_filters)}
     forecasts = {name_key(each.name): each for each in model.forecasts}
     unused = {name_key(each.name) for each in model.definitions.unused}
+    correlations = list(model.definitions.correlations)
     last: dict[str, Change] = {}
     for change in changes:
         if isinstance(change, Limits):
@@ -252,6 +262,8 @@ def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
         elif isinstance(change, Stated):
             key = _known(change.forecast, forecasts, "forecast", change)
             forecasts[key] = _stated(forecasts[key], change)
+        elif isinstance(change, Correlated):
+            _correlate(correlations, change)
         elif not isinstance(change, Typed | Switched | Tabulated):
             key = _known(change.assumption, assumptions, "assumption", change)
             assumptions[key] = _other(assumptions[key], change, model.lowering)
@@ -265,7 +277,27 @@ def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
         filters=changed[:count],
         forecast_filters=changed[count:],
         forecasts=tuple(forecasts.values()),
+        correlations=tuple(correlations),
     )
+
+
+def _correlate(correlations: list[Correlation], change: Correlated) -> None:
+    """Put the other coefficient in the place of the workbook's.
+
+    Raises:
+        DefinitionError: the workbook gives the two none, or it is no coefficient.
+    """
+    pair = {name_key(change.first), name_key(change.second)}
+    place = next((i for i, c in enumerate(correlations) if {name_key(c.first), name_key(c.second)} == pair), None)
+    if place is None:
+        message = f"the workbook has no correlation of {change.first!r} and {change.second!r}"
+        raise DefinitionError(message, where=change.where, hint="give them one in the workbook; it may be 0")
+    if not -1.0 <= change.value <= 1.0:
+        message = (
+            f"a correlation of {show(change.value)} of {change.first!r} and {change.second!r} must lie between -1 and 1"
+        )
+        raise DefinitionError(message, where=change.where or correlations[place].row, hint="give a rank correlation")
+    correlations[place] = replace(correlations[place], value=change.value)
 
 
 def _measured(filter_: Filter, change: Measured) -> Filter:
@@ -313,7 +345,9 @@ def _merged(again: Definitions, old: Definitions, new: Definitions) -> Definitio
         replace(each, central=by.central, threshold=by.threshold) if (by := stated.get(each.name)) else each
         for each in again.forecasts
     )
-    return replace(again, assumptions=assumptions, forecasts=forecasts)
+    tied = {(b.first, b.second): b for a, b in zip(old.correlations, new.correlations, strict=True) if a is not b}
+    correlations = tuple(tied.get((each.first, each.second), each) for each in again.correlations)
+    return replace(again, assumptions=assumptions, forecasts=forecasts, correlations=correlations)
 
 
 def _with_difference(again: Assumption, old: Assumption, new: Assumption) -> Assumption:

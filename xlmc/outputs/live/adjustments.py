@@ -17,11 +17,20 @@ from typing import Any, Final
 from xlmc.analysis.results.statements.in_words import number_text
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell
-from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Forecast, Parameter
+from xlmc.montecarlo.definitions.definitions import (
+    CUTOFFS,
+    Assumption,
+    Correlation,
+    Definitions,
+    Filter,
+    Forecast,
+    Parameter,
+)
 from xlmc.montecarlo.definitions.evidence import SIZES, USE_IS_OFF, Evidence
 from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Change,
+    Correlated,
     Drawn,
     Frozen,
     Limits,
@@ -58,6 +67,7 @@ __all__ = [
     "measured_numbers",
     "movable_limits",
     "own_values",
+    "pairs_of",
     "scenario_of",
     "usual_variants",
 ]
@@ -85,7 +95,12 @@ REMOVABLE: Final = frozenset({*LIMITS, *CUTOFFS, "threshold"})
 
 _HEADINGS_OF_KINDS: Final = {spec.key: spec.heading for kind in KINDS for spec in FAMILIES[kind].parameters}
 
-PARTS: Final = {"assumption": "assumptions", "filter": "filters", "forecast": "forecasts"}
+PARTS: Final = {
+    "assumption": "assumptions",
+    "filter": "filters",
+    "forecast": "forecasts",
+    "correlation": "correlations",
+}
 """Kind of row -> the field of `Adjustments` that holds its changes."""
 
 Amount = float | bool | str
@@ -102,9 +117,10 @@ class Adjustments:
     assumptions: Changed = field(default_factory=dict)
     filters: Changed = field(default_factory=dict)
     forecasts: Changed = field(default_factory=dict)
+    correlations: Changed = field(default_factory=dict)
 
     def __bool__(self) -> bool:
-        return bool(self.assumptions or self.filters or self.forecasts)
+        return bool(self.assumptions or self.filters or self.forecasts or self.correlations)
 
     def having(self, of: str, name: str, key: str, value: Amount | None) -> Adjustments:
         """Return the adjustments with one value set; None sets it back to the workbook's."""
@@ -156,7 +172,7 @@ class Adjustments:
 
     def numbers(self, definitions: Definitions) -> Adjustments:
         """Return the other part: numbers of what is drawn, of filters that are used, and of forecasts."""
-        found = Adjustments(forecasts=self.forecasts)
+        found = Adjustments(forecasts=self.forecasts, correlations=self.correlations)
         for name, given in self.filters.items():
             if given.get("used", definitions.is_used(name)):
                 found = found._with("filter", name, {key: value for key, value in given.items() if key != "used"})
@@ -180,14 +196,15 @@ class Adjustments:
         """
         made = cls()
         for of, part in PARTS.items():
-            rows = found.get(part, {}) if of == "forecast" else found[part]  # files before 0.12.0 have no forecasts
+            rows = found.get(part, {}) if of in ("forecast", "correlation") else found[part]  # new in 0.12.0
             for name, each in rows.items():
                 for key, value in each.items():
                     made = made.having(of, str(name), str(key), _amount(str(key), value))
         return made
 
     def _part(self, of: str) -> Changed:
-        return {"assumption": self.assumptions, "filter": self.filters, "forecast": self.forecasts}[of]
+        found: Changed = getattr(self, PARTS[of])
+        return found
 
     def _with(self, of: str, name: str, own: Mapping[str, Amount]) -> Adjustments:
         part = {other: each for other, each in self._part(of).items() if other != name}
@@ -246,6 +263,9 @@ def own_values(
         switch = {"used": definitions.is_used(name)} if name in definitions.switches else {}
         numbers = {} if evidence is None else measured_numbers(evidence)
         return {**numbers, **({} if filter_ is None else movable_limits(filter_)), **switch}
+    if of == "correlation":
+        pair = pairs_of(definitions).get(name)
+        return {} if pair is None else {"correlation": pair.value}
     if of == "forecast":
         forecast = next((each for each in definitions.forecasts if each.name == name), None)
         return {} if forecast is None else {"threshold": forecast.threshold, "central": _percent(forecast)}
@@ -257,6 +277,11 @@ def own_values(
         assumption = in_kind(assumption, kind)
     numbers = {key: value for key, (_, value) in assumption_numbers(assumption).items()}
     return {**own_kind, **numbers, **BAND, "base": assumption.base, "frozen": assumption.frozen}
+
+
+def pairs_of(definitions: Definitions) -> dict[str, Correlation]:
+    """Return the correlations of the workbook, each by the names of its two assumptions."""
+    return {f"{each.first} and {each.second}": each for each in definitions.correlations}
 
 
 def movable_limits(filter_: Filter) -> dict[str, Parameter]:
@@ -291,6 +316,10 @@ def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Chang
             found.append(Measured(name, {key: float(value) for key, value in numbers.items()}))
         elif used and numbers:
             found.append(Limits(name, _numbers(numbers)))
+    pairs = pairs_of(definitions)
+    for name, given in adjustments.correlations.items():
+        if name in pairs and "correlation" in given:
+            found.append(Correlated(pairs[name].first, pairs[name].second, float(given["correlation"])))
     found += [Stated(name, _numbers(given)) for name, given in adjustments.forecasts.items()]
     return found
 
@@ -407,6 +436,8 @@ def _row_of(change: Change) -> tuple[str, str]:
             return "filter", name
         case Stated(name):
             return "forecast", name
+        case Correlated(first, second):
+            return "correlation", f"{first} and {second}"
         case Frozen(name) | Drawn(name) | Band(name) | Range(name) | Numbers(name) | Redrawn(name):
             return "assumption", name
     raise TypeError(change)
@@ -421,6 +452,8 @@ def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, 
             return {"frozen": False}
         case Switched(_, used):
             return {"used": used}
+        case Correlated(_, _, value):
+            return {"correlation": value}
         case Redrawn(name, to) if name in assumptions and to.family in kinds_of(assumptions[name]):
             suited = in_kind(assumptions[name], to.family).given
             return {"kind": to.family, **{key: value for key, value in to.given.items() if value != suited.get(key)}}
@@ -503,7 +536,9 @@ def changed_text(
         return "frozen" if after else "not frozen"
     if key == "used":
         return "used" if after else "not used"
-    if of != "assumption":
+    if of == "correlation":
+        heading = "correlation"
+    elif of != "assumption":
         heading = {**LIMITS, **MEASURED, **STATED}[key]
     elif key in BAND:
         heading = "band from" if key == "band_low" else "band to"

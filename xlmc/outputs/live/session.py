@@ -56,6 +56,7 @@ from xlmc.outputs.live.protocol import Message, PageMessage
 from xlmc.outputs.live.window_book import (
     assumption_rows,
     book_message,
+    correlation_rows,
     filter_rows,
     known_scenario,
     run_row,
@@ -174,6 +175,7 @@ class Session:
             "assumptions": assumption_rows(self.own, self.adjustments),
             "filters": filter_rows(self.own, self.adjustments),
             "forecasts": stated_rows(self.own, self.adjustments),
+            "correlations": correlation_rows(self.own, self.adjustments),
             "run": run_row(self.own, self.asked),
             "changes": in_words(self.own.definitions, self.adjustments),
             "scenarios": list(scenario_rows(self.own.definitions, self.stored)),

@@ -40,6 +40,7 @@ from xlmc.outputs.live.adjustments import (
     measured_numbers,
     movable_limits,
     own_values,
+    pairs_of,
 )
 from xlmc.outputs.live.kinds import in_kind, kinds_of
 from xlmc.outputs.live.protocol import Message
@@ -48,6 +49,7 @@ from xlmc.outputs.page.payload import CONFIDENCE
 __all__ = [
     "assumption_rows",
     "book_message",
+    "correlation_rows",
     "filter_rows",
     "forecast_rows",
     "known_scenario",
@@ -305,6 +307,15 @@ def book_message(model: CompiledModel) -> Message:
         "shapes": shapes_of(model),
         "z": t_quantile(math.inf, CONFIDENCE),
     }
+
+
+def correlation_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, Any]]:
+    """Return the rank correlation of every two assumptions that the workbook gives one, as it is now."""
+    rows = []
+    for name, each in pairs_of(own.definitions).items():
+        given = adjustments.correlations.get(name, {})
+        rows.append({"name": name, "value": given.get("correlation", each.number), "changed": bool(given)})
+    return rows
 
 
 def run_row(model: CompiledModel, asked: RunOptions) -> dict[str, Any]:

@@ -12,6 +12,7 @@ from xlmc.montecarlo.definitions.evidence import ERRORS, SIZES, Evidence, Within
 from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Change,
+    Correlated,
     Drawn,
     Frozen,
     Limits,
@@ -193,6 +194,8 @@ def _change_text(change: Change) -> str:
             return f"{name} {' and '.join(words) or 'without ' + ', '.join(key.replace('_', ' ') for key in values)}"
         case Switched(name, used):
             return f"{name} {'used' if used else 'not used'}"
+        case Correlated(first, second, value):
+            return f"correlation of {first} and {second} {_plain_number(value)}"
         case Redrawn(name, distribution):
             return f"{name} {distribution!r}"
         case Tabulated(number, values):

@@ -6,21 +6,22 @@ from collections.abc import Iterator
 
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.workbook.workbook import CellValue, Workbook
-from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Filter, Forecast, Parameter
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Correlation, Filter, Forecast, Parameter
 from xlmc.montecarlo.definitions.evidence import SIZES
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.filters import LIMITS
 from xlmc.montecarlo.definitions.tables.reserved_tables import definition_tables
-from xlmc.montecarlo.definitions.tables.table_rows import Row
+from xlmc.montecarlo.definitions.tables.table_rows import Row, as_text
+from xlmc.montecarlo.distributions.spelling import name_key
 
 __all__ = ["NO_TABLE", "cells_that_change", "use_cell"]
 
 NO_TABLE = "of a table"
 
+_Row = Assumption | Filter | Forecast | Correlation
 
-def cells_that_change(
-    workbook: Workbook, old: Assumption | Filter | Forecast, new: Assumption | Filter | Forecast
-) -> tuple[dict[Cell, CellValue], list[str]]:
+
+def cells_that_change(workbook: Workbook, old: _Row, new: _Row) -> tuple[dict[Cell, CellValue], list[str]]:
     """Return the cells to be typed into, so that a row says what `new` says in place of `old`.
 
     Returns:
@@ -28,6 +29,9 @@ def cells_that_change(
         no table, as a draw in a cell, has no cells: that is `NO_TABLE`.
     """
     row = _row_of(workbook, old.row)
+    if isinstance(old, Correlation) or isinstance(new, Correlation):
+        assert isinstance(new, Correlation)
+        return _coefficients(workbook, row, new)
     if row is None or isinstance(old.cell, InFormula):
         return {}, [NO_TABLE]
     found: dict[Cell, CellValue] = {}
@@ -41,6 +45,24 @@ def cells_that_change(
     if isinstance(old, Assumption) and isinstance(new, Assumption) and old.base != new.base:
         found[old.cell] = new.base
     return found, lacking
+
+
+def _coefficients(workbook: Workbook, row: Row | None, new: Correlation) -> tuple[dict[Cell, CellValue], list[str]]:
+    """Return the cells of a correlation: one of a list of pairs, one or both of a matrix."""
+    if row is None:
+        return {}, [NO_TABLE]
+    if row.has("First") and row.has("Second"):
+        return {row.cell("Correlation"): new.number}, []
+    first, *others = row.headings
+    pair, body = {name_key(new.first), name_key(new.second)}, row.table.table.body
+    found: dict[Cell, CellValue] = {}
+    for number in range(body.top, body.bottom + 1):
+        each = Row(workbook, row.table, number)
+        name = name_key(as_text(each.content(first).value))
+        for heading in others:
+            if each.filled(heading) and {name, name_key(heading)} == pair:
+                found[each.cell(heading)] = new.number
+    return found, []
 
 
 def use_cell(workbook: Workbook, first: Cell) -> Cell | None:

@@ -242,9 +242,36 @@ class FilterCard {
 
 const MANY_CARDS = 8; // with more assumptions they can be looked for
 
+/** The rank correlation of two assumptions. */
+class CorrelationCard {
+  constructor(row, wire, sent) {
+    Object.assign(this, { row, wire });
+    this.box = new NumberBox("Rank correlation", "", (value) => {
+      if (value < -1 || value > 1) return "Type a number from -1 to 1.";
+      sent(wire.set("correlation", row.name, "correlation", value, false), null);
+      return "";
+    }, { hidden: row.name });
+    this.back = make("button", { type: "button", class: "back", text: "As in the workbook", "aria-label": `${row.name} as in the workbook`,
+      on: { click: () => wire.say({ kind: "reset", of: "correlation", name: row.name }) } });
+    this.root = make("article", { class: "card", "aria-label": row.name }, make("h3", {}, named(row.name), this.back),
+      make("div", { class: "numbers" }, this.box.root));
+  }
+
+  update(row) {
+    this.row = row;
+    this.box.update(row.value, 0.01);
+    this.root.classList.toggle("changed", row.changed);
+    this.back.hidden = !row.changed;
+  }
+
+  moved(_, value) {
+    this.box.update(value, 0.01);
+  }
+}
+
 class LeftSide {
   constructor(wire, sent) {
-    Object.assign(this, { wire, sent, assumptions: new Map(), filters: new Map(), own: {}, shapes: {} });
+    Object.assign(this, { wire, sent, assumptions: new Map(), filters: new Map(), correlations: new Map(), own: {}, shapes: {} });
     this.find = document.getElementById("find");
     for (const control of this.find.querySelectorAll("input")) control.addEventListener("input", () => this.sift());
     this.makeRun();
@@ -291,7 +318,9 @@ class LeftSide {
     this.shapes = { ...shapes };
   }
 
-  state({ assumptions, filters, run }) {
+  state({ assumptions, filters, correlations, run }) {
+    this.rows("correlations", CorrelationCard, correlations, (card, row) => card.update(row));
+    document.getElementById("correlations-head").hidden = !correlations.length;
     this.run = run;
     this.trials.update(run.trials, 1);
     this.seed.update(run.seed, 1);

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import openpyxl
 import pytest
+from click.shell_completion import BashComplete
+
+from xlmc.cli import xlmc as command
 
 COMMANDS = ("xlmc prepare", "xlmc new blank", "xlmc check", "xlmc simulate", "xlmc calculate")
 
@@ -51,3 +54,15 @@ def test_a_problem_is_red_and_its_cure_green_on_a_terminal(on_a_screen, monkeypa
 def test_no_color_is_obeyed(on_a_screen, monkeypatch):
     monkeypatch.setenv("NO_COLOR", "1")
     assert "\x1b[31m" not in on_a_screen("check", "none.xlsx").err
+
+
+def test_an_option_of_xlmc_behind_a_command_is_told_where_it_stands(xlmc):
+    outcome = xlmc("simulate", "book.xlsx", "-q")
+    assert (outcome.code, outcome.err.count("\n")) == (2, 1)
+    assert "-q stands before the command: xlmc -q simulate" in outcome.err
+
+
+@pytest.mark.parametrize(("typed", "found"), [("war", ["warranty"]), ("Bl", ["blank"]), ("nothing", [])])
+def test_templates_are_completed(typed, found):
+    completion = BashComplete(command, {}, "xlmc", "_XLMC_COMPLETE")
+    assert [each.value for each in completion.get_completions(["new"], typed)] == found

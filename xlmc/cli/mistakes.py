@@ -26,6 +26,10 @@ def _line(error: click.ClickException) -> str:
     command = context.command_path if context is not None else "xlmc"
     match error:
         case click.NoSuchOption():
+            above = None if context is None else context.parent
+            if above is not None and any(error.option_name in each.opts for each in above.command.params):
+                rest = command.removeprefix(f"{above.command_path} ")
+                return f"{error.option_name} stands before the command: {above.command_path} {error.option_name} {rest}"
             known = [name for each in context.command.params for name in each.opts] if context is not None else []
             near = did_you_mean(error.option_name, known)
             return f"there is no option {error.option_name}.{near}{_see(command)}"

@@ -38,8 +38,13 @@ _NO_TEMPLATE: Final = re.compile(r"^~\$|-results(-\d+)?$")
 """What else may lie in the folder of a checkout: the mark that Excel makes beside an open workbook, and results."""
 
 
+def _beginning_with(_: click.Context, __: click.Parameter, typed: str) -> list[str]:
+    """Return the templates that a shell completes what was typed to."""
+    return [name for name in (_BLANK, *templates()) if name.startswith(typed.casefold())]
+
+
 @click.command()
-@click.argument("template", required=False)
+@click.argument("template", required=False, shell_complete=_beginning_with)
 @click.argument("book", required=False, type=FilePath())
 @click.option("--units", type=OneOf(*_UNITS), default="imperial", show_default=True, help="Units of the copy.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")

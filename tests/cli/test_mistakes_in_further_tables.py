@@ -124,6 +124,12 @@ CASES = {
         "Correlation (1.2) must lie between -1 and 1",
         "Type a rank correlation",
     ),
+    "a correlation in words": (
+        matrix(("load", 1, None), ("strength", "high", 1)),
+        "T!B3",
+        "Correlation holds the text 'high'",
+        "Type a number",
+    ),
     "a name misspelt in a matrix": (
         matrix(("load", 1, None), ("strenght", 0.2, 1)),
         "T!A3",

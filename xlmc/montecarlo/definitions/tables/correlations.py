@@ -131,7 +131,7 @@ def _assumption_named(row: Row, heading: str, names: Mapping[str, str]) -> str:
 
 
 def _coefficient(row: Row, heading: str = "Correlation") -> Parameter:
-    value = parameter(row, heading)
+    value = parameter(row, heading, "Correlation")  # the columns of a matrix are called by names
     where = row.cell(heading)
     if value is None:
         raise DefinitionError("Correlation is blank", where=where, hint="Type a number from -1 to 1")

@@ -230,8 +230,13 @@ def number(row: Row, heading: str) -> float | None:
     return number_in(row.heading(heading), row.content(heading), row.cell(heading))
 
 
-def parameter(row: Row, heading: str) -> Parameter | None:
+def parameter(row: Row, heading: str, called: str = "") -> Parameter | None:
     """Return the number in the cell, or the cell itself where it holds a formula; None if it is blank.
+
+    Args:
+        row: with the cell.
+        heading: of its column.
+        called: what messages call the number; by default as the heading is written.
 
     Raises:
         DefinitionError: the cell holds text, a logical or an error, typed in or as Excel cached it. A formula that
@@ -243,7 +248,7 @@ def parameter(row: Row, heading: str) -> Parameter | None:
     if content.formula is not None and (content.value is None or content.value is ErrorCode.NAME):
         # Never calculated yet, or by a program that does not know a function of @RISK: each run calculates it.
         return row.cell(heading)
-    value = number_in(row.heading(heading), content, row.cell(heading))
+    value = number_in(called or row.heading(heading), content, row.cell(heading))
     return value if content.formula is None else row.cell(heading)
 
 

@@ -13,36 +13,17 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, MutableMapping
 from contextlib import contextmanager
+from importlib import import_module
 from types import FrameType
 from typing import Final
 
 import click
 
-from xlmc.cli.calculate import calculate
-from xlmc.cli.check import check
-from xlmc.cli.compare import compare
-from xlmc.cli.convert import convert
-from xlmc.cli.decide import decide
-from xlmc.cli.fit import fit
-from xlmc.cli.methods import methods
 from xlmc.cli.mistakes import did_you_mean, mistake
-from xlmc.cli.new import new
-from xlmc.cli.open import open_window
-from xlmc.cli.optimise import optimise
-from xlmc.cli.options import OneOf
-from xlmc.cli.prepare import prepare_book
-from xlmc.cli.replay import replay
-from xlmc.cli.report import report
-from xlmc.cli.scenario import scenario
-from xlmc.cli.screen import screen
-from xlmc.cli.seek import seek
-from xlmc.cli.simulate import INTERRUPTED, simulate
-from xlmc.cli.stability import stability
-from xlmc.cli.terminal import be_quiet, prepare, put, say
-from xlmc.cli.uncertainty import uncertainty
-from xlmc.cli.verify import verify
+from xlmc.cli.terminal import INTERRUPTED, be_quiet, say
+from xlmc.cli.terminal import prepare as prepare_terminal  # a module here is called prepare
 from xlmc.errors import XlmcError
 from xlmc.montecarlo.loop.version import __version__
 
@@ -70,6 +51,64 @@ Where to begin:
   xlmc help COMMAND             the options of a command
 """
 """What a person does first; click does not wrap what follows `\\b`."""
+
+
+class _Imported(MutableMapping[str, click.Command]):
+    """Commands by their names, each imported when it is looked up: most of the start would be theirs."""
+
+    def __init__(self, names: dict[str, str]) -> None:
+        self._names = names
+        self._found: dict[str, click.Command] = {}
+
+    def __getitem__(self, name: str) -> click.Command:
+        if name not in self._found:
+            module, _, command = self._names[name].partition(".")
+            self._found[name] = getattr(import_module(f"xlmc.cli.{module}"), command)
+        return self._found[name]
+
+    def __setitem__(self, name: str, command: click.Command) -> None:
+        self._names.setdefault(name, "")
+        self._found[name] = command
+
+    def __delitem__(self, name: str) -> None:
+        del self._names[name]
+        self._found.pop(name, None)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+_COMMANDS: Final = {
+    "new": "new.new",
+    "prepare": "prepare.prepare_book",
+    "check": "check.check",
+    "convert": "convert.convert",
+    "fit": "fit.fit",
+    "verify": "verify.verify",
+    "calculate": "calculate.calculate",
+    "seek": "seek.seek",
+    "simulate": "simulate.simulate",
+    "scenario": "scenario.scenario",
+    "open": "open.open_window",
+    "report": "report.report",
+    "replay": "replay.replay",
+    "compare": "compare.compare",
+    "screen": "screen.screen",
+    "decide": "decide.decide",
+    "optimise": "optimise.optimise",
+    "methods": "methods.methods",
+    "stability": "stability.stability",
+    "uncertainty": "uncertainty.uncertainty",
+    "help": "",
+    "completion": "completion.completion",
+}
+"""Name -> the module and the command in it, in the order in which a person needs them; `help` is added below."""
 
 
 class _Commands(click.Group):
@@ -104,6 +143,7 @@ class _Commands(click.Group):
 
 @click.group(
     cls=_Commands,
+    commands=_Imported({**_COMMANDS}),
     epilog=_BEGINNING,
     invoke_without_command=True,
     context_settings={"help_option_names": ["-h", "--help"], "max_content_width": 100},
@@ -143,51 +183,12 @@ def show_help(context: click.Context, command: str | None) -> None:
         say(found.get_help(inner))
 
 
-@click.command(name="completion")
-@click.argument("shell", type=OneOf("bash", "zsh", "fish"))
-def completion(shell: str) -> None:
-    """Print what makes SHELL complete commands and options when you press Tab.
-
-    Add it to your shell once: xlmc completion bash >> ~/.bashrc, xlmc completion zsh >> ~/.zshrc, or xlmc completion
-    fish > ~/.config/fish/completions/xlmc.fish; then open a new terminal.
-    """
-    from click.shell_completion import get_completion_class
-
-    found = get_completion_class(shell)
-    assert found is not None  # the shells are those that click knows
-    put(found(xlmc, {}, "xlmc", "_XLMC_COMPLETE").source() + "\n")
-
-
-for _command in (
-    new,
-    prepare_book,
-    check,
-    convert,
-    fit,
-    verify,
-    calculate,
-    seek,
-    simulate,
-    scenario,
-    open_window,
-    report,
-    replay,
-    compare,
-    screen,
-    decide,
-    optimise,
-    methods,
-    stability,
-    uncertainty,
-    show_help,
-    completion,
-):
-    xlmc.add_command(_command)
+xlmc.add_command(show_help)
 
 
 def main() -> None:
     """Run the command line; a mistake in the input is a message and exit code 2."""
-    prepare()
+    prepare_terminal()
     try:
         # A command that asks for an exit code returns it.
         with _end_in_order(), _rare_collections():

@@ -41,7 +41,6 @@ def check(
 
     Checks that fail at the base case, and cells that are errors there, come first.
     """
-    from xlmc.analysis.studies.scenario_answers import scenario_faults
     from xlmc.cli.printing import notices
     from xlmc.engine.engines import ENGINES
     from xlmc.errors import XlmcError
@@ -64,7 +63,11 @@ def check(
         except XlmcError as error:
             problems.append(error)
     faults = [] if model is None else _show_base_case(model)
-    impossible = [] if model is None or problems else list(scenario_faults(model).values())
+    impossible: list[XlmcError] = []
+    if model is not None and not problems and model.definitions.scenarios:
+        from xlmc.analysis.studies.scenario_answers import scenario_faults
+
+        impossible = list(scenario_faults(model).values())
     _show_definitions(definitions if model is None else model.definitions, model)
     if model is not None:
         _show_need(model, workbook)
@@ -108,11 +111,11 @@ def _show_base_case(model: CompiledModel) -> list[str]:
 
 def _error_lines(model: CompiledModel, errors: BaseErrors) -> Iterator[str]:
     """Return the cells that errors come from with their formulas, then the cells that have theirs from these."""
-    from xlmc.analysis.results.record.needed_cells import content_text
-    from xlmc.excel.address import host_of
-
     handled = "" if errors.answers else " (handled: no forecast, filter or check is an error)"
     for cell, code in list(errors.roots.items())[:_MOST_CELLS]:
+        from xlmc.analysis.results.record.needed_cells import content_text
+        from xlmc.excel.address import host_of
+
         yield f"{cell} {code.text}{handled}: {content_text(model.workbook, host_of(cell))}"
     if len(errors.roots) > _MOST_CELLS:
         yield f"… and {len(errors.roots) - _MOST_CELLS:,} more cells with an error of their own"

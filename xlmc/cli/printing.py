@@ -6,6 +6,7 @@ In a table words wrap, numbers are never cut, and what is too wide becomes a lis
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Collection, Iterator, Sequence
 from dataclasses import dataclass
 from itertools import zip_longest
@@ -193,9 +194,13 @@ def _fold(word: str, width: int) -> list[str]:
     return parts
 
 
+_NARROW: Final = re.compile("[ -~\xa0-\u02ff\u0370-\u03ff\u2010-\u2027\u2030-\u205f\u2070-\u209f\u2190-\u22ff]*")
+"""Signs of one column each, as words and numbers here have: accents, Greek, dashes, superscripts, arrows, operators."""
+
+
 def _wide(text: str) -> int:
     """Columns of the screen that a text takes: two for an East Asian letter, none for a mark on another."""
-    if text.isascii():
+    if text.isascii() or _NARROW.fullmatch(text):
         return len(text)
     from rich.cells import cell_len
 

@@ -19,7 +19,7 @@ from xlmc.cli.options import (
     run_options,
 )
 from xlmc.cli.output_options import Outputs, ReportContents, output_options, results_beside
-from xlmc.cli.terminal import paragraph, say
+from xlmc.cli.terminal import INTERRUPTED, paragraph, say
 from xlmc.cli.writing import NOT_WRITTEN
 
 if TYPE_CHECKING:
@@ -32,7 +32,6 @@ if TYPE_CHECKING:
 __all__ = ["show_run", "simulate"]
 
 NOT_TO_BE_USED = 1
-INTERRUPTED = 130
 
 _MOST_MOVED = 4
 """Forecasts of which the terminal shows what evidence moves; the sheet Evidence results shows all."""

@@ -19,6 +19,7 @@ from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.printable import printable
 
 __all__ = [
+    "INTERRUPTED",
     "be_quiet",
     "encodable",
     "is_quiet",
@@ -31,6 +32,9 @@ __all__ = [
     "say_json",
     "width",
 ]
+
+INTERRUPTED: Final = 130
+"""The exit code after Ctrl-C."""
 
 PIPE_WIDTH: Final = 100
 """Columns of text in a pipe or a file."""

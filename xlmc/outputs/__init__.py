@@ -6,8 +6,6 @@ from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from xlmc.outputs.sheets.save import save as save_sheets
-from xlmc.outputs.sheets.trials_sheet import TRIAL_ROWS
 from xlmc.outputs.summary import SummaryRow, error_sentence, summarise, summary_text
 
 if TYPE_CHECKING:
@@ -23,17 +21,19 @@ _TAB = 31
 
 
 def save(
-    simulation: RunResult, path: Path, *, command: str | None = None, rows: int = TRIAL_ROWS, overwrite: bool = False
+    simulation: RunResult, path: Path, *, command: str | None = None, rows: int | None = None, overwrite: bool = False
 ) -> Path:
     """Write the workbook with its result sheets, and those of the sections that have no sheet of their own.
 
     `xlmc.outputs.sheets.save.save` says what the arguments are, and what is raised.
     """
     from xlmc.outputs.document import further_sections
+    from xlmc.outputs.sheets.save import save as save_sheets
+    from xlmc.outputs.sheets.trials_sheet import TRIAL_ROWS
 
     found = further_sections(simulation, "sheets").values()
     further = [_sheet(heading, blocks) for heading, blocks in found]
-    return save_sheets(simulation, path, command=command, rows=rows, overwrite=overwrite, further=further)
+    return save_sheets(simulation, path, command=command, rows=rows or TRIAL_ROWS, overwrite=overwrite, further=further)
 
 
 def _sheet(heading: str, blocks: list[Block]) -> ResultSheet:

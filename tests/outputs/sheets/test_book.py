@@ -119,6 +119,28 @@ def test_the_library_that_writes_is_imported_only_when_something_is_written():
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
 
 
+@pytest.mark.parametrize(
+    ("typed", "absent"),
+    [
+        (["--version"], ("numpy", "xlmc.cli.simulate", "xlmc.engine")),
+        (
+            ["check"],
+            ("scipy", "xlsxwriter", "rich", "distributed", "xlmc.outputs.sheets.book", "xlmc.montecarlo.simulation"),
+        ),
+    ],
+    ids=["version", "check"],
+)
+def test_a_command_imports_what_it_needs(small_book, typed, absent):
+    code = (
+        "import sys\nfrom xlmc.cli import main\n"
+        f"sys.argv = ['xlmc', *{typed}, *([{str(small_book)!r}] if 'check' in {typed} else [])]\n"
+        "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
+        f"print('loaded:', [name for name in {absent} if name in sys.modules])"
+    )
+    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, encoding="utf-8")
+    assert found.stdout.splitlines()[-1] == "loaded: []", found.stderr
+
+
 def test_the_case_stands_on_top_of_every_printed_page(small_book, tmp_path):
     book = openpyxl.load_workbook(small_book)
     sheet = book.create_sheet("Case")

@@ -10,7 +10,6 @@ from xlmc.engine.engines import ENGINES
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.loop.blocks import Block, ModelRunner, Task
 from xlmc.montecarlo.loop.scheduling.batches import by_threads
-from xlmc.montecarlo.loop.scheduling.cluster import by_cluster
 from xlmc.montecarlo.loop.scheduling.processes import by_processes
 from xlmc.montecarlo.loop.scheduling.run_spec import RunSpec, model_runner
 
@@ -92,6 +91,8 @@ class WorkerPool:
             portable = own if ENGINES[settings.engine].portable else spec
             yield from by_processes(portable, own, jobs - 1, blocks, tasks)
         else:
+            from xlmc.montecarlo.loop.scheduling.cluster import by_cluster  # few runs need it
+
             yield from by_cluster(spec, scheduler, self.workers, blocks, tasks)
 
 

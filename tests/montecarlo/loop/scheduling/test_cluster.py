@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from threading import Timer
 
 import pytest
 from distributed import Client, LocalCluster
@@ -76,6 +77,24 @@ def test_ctrl_c_in_a_local_cluster_keeps_what_was_accepted(model, bits, capfd):
     assert bits(run) == bits(simulated(model, run.trials))
     assert alive == expected != []
     assert "Traceback" not in capfd.readouterr().err
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="this system cannot stop a process for a while")
+def test_a_slow_worker_costs_only_time(model, bits, cluster):
+    """It stands still for a second with blocks of its own, which the others wait for in their order."""
+    address, other = cluster
+    stopped = []
+
+    def stop(standing):
+        if standing.trials > 300 and not stopped:
+            other.send_signal(signal.SIGSTOP)
+            stopped.append(Timer(1.0, other.send_signal, [signal.SIGCONT]))
+            stopped[0].start()
+
+    run = simulated(model, 8000, scheduler=address, progress=stop)
+    stopped[0].join()
+    assert other.poll() is None
+    assert bits(run) == bits(simulated(model, 8000))
 
 
 def test_a_worker_that_is_killed_costs_only_time(model, bits, cluster):

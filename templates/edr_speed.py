@@ -602,7 +602,7 @@ _ANSWERS = (
         "[ft|m]",
         f"{_USED},x_table," + "+".join(f"x_{number}" for number in _SAMPLES) + f")+(t_0/({MPH})+v_impact_s)/2*tau",
         "Σ x",
-        "",
+        "At least: the brake came on up to one interval before that sample.",
         Role.ANSWER,
         "0.0",
     ),
@@ -788,7 +788,7 @@ TEMPLATE = Template(
     forecasts=(
         ForecastRow("«1» speed at the impact", "vi_[mph|kmh]", "[mph|km/h]"),
         ForecastRow("«1» speed when the brake was first on", "v_on_[mph|kmh]", "[mph|km/h]"),
-        ForecastRow("«1» way from brake on to the impact", "x_on", "[ft|m]"),
+        ForecastRow("«1» way from brake on to the impact, at least", "x_on", "[ft|m]", stated="lower bound"),
         ForecastRow("«1» way from the first sample to the impact", "x_record", "[ft|m]"),
         ForecastRow("«1» time from brake on to the impact, at least", "t_braked", "s", stated="lower bound"),
         ForecastRow("«1» speed at the second event", "v_2nd_[mph|kmh]", "[mph|km/h]"),
@@ -818,7 +818,8 @@ TEMPLATE = Template(
             None,
             "Uniform",
             {},
-            "Enter the length surveyed, and how far it may be off: marks begin after the brake does",
+            "Enter the length surveyed, and how far it may be off: marks begin after the brake does, and the brake "
+            "came on up to one interval before the first sample that shows it",
         ),
         *(_as_evidence(made) for made in (recorded_delta_v, cut_off_delta_v)),
     ),

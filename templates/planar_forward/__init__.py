@@ -89,15 +89,18 @@ _CLOSURE = Input(
     choices=(1, 2),
 )
 
+_FOUND = "COUNT(rest_beta_1,rest_s_1,rest_beta_2,rest_s_2)"
+"""Readings of sheet Evidence that say how the vehicles went to rest."""
+
 _SEARCHED = (
     Equation(
         "V{j}_fits_[mph|kmh]",
         "V{j}fit ([mph|km/h])",
         "{who} impact speed that fits",
         "[mph|km/h]",
-        "V{j}_before",
+        f'IF({_FOUND}>0,V{{j}}_before,"–")',
         "input",
-        "<As drawn. Where evidence says how the vehicles went to rest, its trials tell the speed that leads there.|>",
+        "<The trials that sheet Evidence keeps tell the speed that leads to rest where it was found. A dash without.|>",
         Role.ANSWER,
         "0.00",
     ),
@@ -106,7 +109,7 @@ _SEARCHED = (
         "α{j}fit",
         "{who} approach angle that fits",
         "deg",
-        "alpha_{j}",
+        f'IF({_FOUND}>0,alpha_{{j}},"–")',
         "input",
         "",
         Role.ANSWER,
@@ -210,6 +213,7 @@ def _evidence() -> tuple[EvidenceRow, ...]:
                 "Uniform",
                 {},
                 "The line from the impact toward rest, and how far it may be off; within the turn that the model gives",
+                named=f"rest_beta_{j}",
             ),
             EvidenceRow(
                 f"{who} travel to rest as surveyed",
@@ -218,6 +222,7 @@ def _evidence() -> tuple[EvidenceRow, ...]:
                 "Uniform",
                 {},
                 "The distance surveyed, and how far it may be off",
+                named=f"rest_s_{j}",
             ),
             recorded_delta_v(f"{who} delta-V", f"dV{j}_[mph|kmh]"),
             cut_off_delta_v(f"{who} delta-V", f"dV{j}_[mph|kmh]"),

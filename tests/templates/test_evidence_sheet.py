@@ -63,7 +63,13 @@ CASES = [
     ),
     ("momentum", "Vehicle 1 EDR delta-V, forward", {4: -12}, "Vehicle 1 delta-V", lambda x: x.min() > 0),
     ("airborne", "gouge", {4: -20, 6: 1}, "Direction of flight at landing", lambda x: np.abs(x + 20).max() <= 1),
-    ("edr-speed", "Skid marks", {4: 95, 6: 2}, "Vehicle way from brake on to the impact", lambda x: np.ptp(x) <= 4),
+    (
+        "edr-speed",
+        "Skid marks",
+        {4: 95, 6: 2},
+        "Vehicle way from brake on to the impact, at least",
+        lambda x: np.ptp(x) <= 4,
+    ),
     ("pedestrian", "Throw and marks", {4: 0, 7: 1}, "Vehicle impact speed, from the throw", lambda x: x.std() < 1.7),
 ]
 

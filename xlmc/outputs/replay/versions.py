@@ -241,6 +241,7 @@ RULES: Final = (
         "0.12.0", "a column Use of xlmc_filters says whether a row is used", re.compile(r"^\W*use\W*$", re.IGNORECASE)
     ),
     Rule("0.12.0", "a forecast whose answers are texts counts them, where its trials were lost", _TEXTS),
+    Rule("0.12.0", "a number known before the run is no yes/no answer; of one its share alone is told", _ANY),
     Rule("0.12.0", "pairs of forecasts count a yes/no answer as above its limit where it is a yes", _ANY),
     Rule("0.12.0", "comparisons judge yes/no answers and texts by their shares alone", _ANY),
     Rule("0.12.0", "adjustment weights of matrices of rank correlations are honoured", _calls("RiskCorrmat")),

@@ -220,3 +220,9 @@ def test_below_between_and_above_are_all_trials(values):
     assert between.share.value == pytest.approx(inside, abs=1e-12)
     assert found["over"].share.value == np.mean(values > 2.0)
     assert found["over"].words == "above 2 mph"
+
+
+@pytest.mark.parametrize(("threshold", "told"), [(0.5, 1), (0.0, 1), (1.0, 2), (-1.0, 2)])
+def test_that_a_yes_is_above_one_half_is_not_told_again(threshold, told):
+    values = np.repeat([0.0, 1.0], [30, 70])
+    assert len(sentences(values, threshold=threshold)) == told

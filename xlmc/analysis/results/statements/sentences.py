@@ -151,11 +151,13 @@ _OF_ROLE: Final = {Role.LOWER: "a probability of at least", Role.UPPER: "a proba
 
 
 def _probabilities(result: ForecastResult) -> Iterator[Statement]:
-    """Return what was asked of a forecast beside its range."""
+    """Return what was asked of a forecast beside its range; that a yes/no is above its limit is told as a yes."""
     definition, above = result.definition, result.statistics.probability_above
     name, units = definition.name, f" {definition.units}" if definition.units else ""
-    if definition.threshold is not None and above is not None:
-        event = f"{name} > {result.form.number(definition.threshold)}{units}"
+    limit = definition.threshold
+    told = limit is not None and 0 <= limit < 1 and result.yes is not None and result.sample.yes_no
+    if limit is not None and above is not None and not told:
+        event = f"{name} > {result.form.number(limit)}{units}"
         yield Statement(name, "threshold", _probability_text(event, above, _relation(definition.role, "above")))
     if definition.asked is not None and result.certainty is not None:
         event = f"{name} {range_text(*definition.asked, result.form.number)}{units}"

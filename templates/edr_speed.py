@@ -677,6 +677,13 @@ _CHECKS = checks_section(
     ),
     BRAKING_CHECK,
     check(
+        "check_restitution",
+        "Restitution lies between 0 and 1",
+        "AND(e>=0,e<1)",
+        "definition",
+        "FALSE: the vehicles would not separate, or gain energy. A percentage entered as a number?",
+    ),
+    check(
         "check_time",
         "The impact lies at the last sample or after it",
         "AND(tau>=0,T_s>0,OR(rec_n<2,tau<=2*rec_step))",

@@ -194,6 +194,7 @@ _TABLE = PastedTable(
     subtitle="Enter many frames of one vehicle: the time stamp of each, as measured in the file, and where a point of "
     "it lies along its path. Blank: two marks, as on sheet Inputs.",
     read=(
+        _read("rec_begun", "Times and positions that are filled", "COUNTA($B$6:$C$105)", number_format="0"),
         _read("rec_n", "Frames", f"SUM({_USED})", "Fewer than 3: the table is not used", "0"),
         _read("rec_mid", "Their mean time, s", f"IF(rec_n>0,SUMPRODUCT({_USED},{_column('B')})/rec_n,0)"),
         _read("rec_place", "Their mean position", f"IF(rec_n>0,SUMPRODUCT({_USED},{_column('C')})/rec_n,0)"),
@@ -358,8 +359,7 @@ _CHECKS = checks_section(
     check(
         "check_table",
         "The table of frames was read, and its marks scatter as they should",
-        "OR(COUNTA(Record!$B$6:$C$105)=0,AND(rec_used=1,SUM(Record!$D$6:$D$105)*2=COUNTA(Record!$B$6:$C$105),"
-        "OR(NOT(ISNUMBER(mark_error)),rec_free<1,rec_sd<=2*N(mark_error))))",
+        "OR(rec_begun=0,AND(rec_used=1,rec_n*2=rec_begun,OR(NOT(ISNUMBER(mark_error)),rec_free<1,rec_sd<=2*N(mark_error))))",
         "least squares",
         "FALSE: a frame without time or position, fewer than three; or marks lie farther from the curve than their "
         "error allows: then the deceleration was not steady, or a mark is wrong.",

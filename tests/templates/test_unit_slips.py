@@ -36,7 +36,7 @@ ANGLE = {
     "airborne": ("theta",),
     "pedestrian": ("angle",),
 }
-RESTITUTION = {"collinear": ("e",), "planar-forward": ("e_n", "e_t"), "crush-energy": ("e",)}
+RESTITUTION = {"collinear": ("e",), "planar-forward": ("e_n", "e_t"), "crush-energy": ("e",), "edr-speed": ("e",)}
 SLIPS = {
     template: [
         (symbol, value)

@@ -122,6 +122,24 @@ _OPTIONAL = (
         Both(4.6, 1.4),
         f"{RADIUS_OF_GYRATION}. Used with the lever arms only",
     ),
+    Input(
+        "t_impact",
+        "Δt",
+        "Impact duration",
+        "s",
+        None,
+        "Optional, of low speeds above all. Gives mean accelerations. From a recorder, or from tests of these bumpers",
+        number_format="0.000",
+    ),
+    Input(
+        "f_braked",
+        "fb",
+        "«2» drag of its braked wheels during the impact",
+        "g",
+        None,
+        "Optional. Friction times the share of braked wheels, where «2» stood on its brake or slid. Needs Δt",
+        number_format="0.00",
+    ),
 )
 
 _SPEEDS = (
@@ -240,8 +258,85 @@ _MORE = (
     ),
 )
 
+_BRAKED = "COUNT(t_impact,f_braked)=2"
+
+
+def _where_braked(formula: str) -> str:
+    return f'IF({_BRAKED},{formula},"–")'
+
+
+_LOW_SPEED = (
+    Equation(
+        "taken",
+        "j",
+        "Speed that its tyres take from «2» during the impact",
+        "[ft|m]/s",
+        "N(f_braked)*g*N(t_impact)",
+        "fb·g·Δt",
+        "0 while sheet Inputs has no duration, or no drag.",
+    ),
+    Equation(
+        "closed_b",
+        "Vc,b",
+        "Closing speed, «2» braked",
+        "[ft|m]/s",
+        _where_braked("IF(known=2,V_close+taken*m_2/m_1/(1+e),V_close)"),
+        "momentum with the impulse of the tyres",
+        "From the speed of «2» after, it was more: its tyres took a part.",
+    ),
+    Equation(
+        "dV_2b",
+        "ΔV2,b",
+        "«2» change in velocity, braked",
+        "[ft|m]/s",
+        _where_braked("IF(known=2,V2_f-V2_i,MAX((closed_b*(1+e)+taken)/(1+m_2/m_1)-taken,MIN(-V2_i,0)))"),
+        "m̄/m2·((1 + e)·Vc + j) − j",
+        "Its brakes hold a standing vehicle, and never push it back.",
+    ),
+    Equation(
+        "dV_1b",
+        "ΔV1,b",
+        "«1» change in velocity, «2» braked",
+        "[ft|m]/s",
+        _where_braked("closed_b*(1+e)-dV_2b"),
+        "(1 + e)·Vc − ΔV2",
+    ),
+    *(
+        Equation(
+            f"{symbol}_[mph|kmh]",
+            f"{notation} ([mph|km/h])",
+            name,
+            _SPEED,
+            _where_braked(f"({quantity})*{MPH}"),
+            "conversion",
+            "",
+            Role.ANSWER,
+            "0.00",
+        )
+        for symbol, notation, name, quantity in (
+            ("V1b", "V1i,b", "«1» impact speed, «2» braked", "V2_i+closed_b"),
+            ("dV1b", "ΔV1,b", "«1» delta-V, «2» braked", "dV_1b"),
+            ("dV2b", "ΔV2,b", "«2» delta-V, braked", "dV_2b"),
+        )
+    ),
+    *(
+        Equation(
+            f"a_mean_{j}",
+            f"a{j}",
+            f"{vehicle(j)} mean acceleration",
+            "g",
+            f'IF(N(t_impact)>0,IF({_BRAKED},dV_{j}b,dV_{j})/t_impact/g,"–")',
+            "ΔV/(g·Δt)",
+            "Of the vehicle, not of its occupants; the peak is higher. It says nothing of injury." if j == 1 else "",
+            Role.ANSWER,
+            "0.00",
+        )
+        for j in (1, 2)
+    ),
+)
+
 _CHECKS = checks_section(
-    5,
+    6,
     check(
         "check_closing",
         "«1» catches «2»",
@@ -301,8 +396,10 @@ _GUIDE = (
             "Not for impacts off centre: enter the lever arms on sheet Inputs to see by how much delta-V is "
             "overstated. The next models are momentum and planar-impact (directions and run-out known) and "
             "planar-forward.",
-            "Not where tyre forces matter: at f = 0.8 they take about 1.8 mph (2.8 km/h) for each 0.1 s of contact, "
-            "much of a low-speed delta-V.",
+            "Tyre forces: at f = 0.8 they take about 1.8 mph (2.8 km/h) for each 0.1 s of contact, much of a low-speed "
+            "delta-V. Where «2» was struck while braked, enter the duration and the drag of its wheels among the "
+            "optional inputs: impact speed, both delta-V and mean accelerations follow. Use evidence on the "
+            "restitution against closing speed, too: at low speeds it decides. None of this says anything of injury.",
         ),
     ),
     RESTITUTION,
@@ -331,6 +428,7 @@ TEMPLATE = Template(
         Section("2  Answers (the forecasts)", _ANSWERS),
         Section("3  Limits of one dimension, claims", _MORE),
         curve_section(4, "e", "closing_[mph|kmh]"),
+        Section("5  Optional: duration, and «2» on its brake", _LOW_SPEED),
         _CHECKS,
     ),
     forecasts=(
@@ -340,6 +438,10 @@ TEMPLATE = Template(
         ForecastRow("«1» speed after", "V1f_[mph|kmh]", _SPEED),
         ForecastRow("«2» speed after", "V2f_[mph|kmh]", _SPEED),
         ForecastRow("Energy lost", "E_lost", "[ft·lb|J]"),
+        ForecastRow("«1» impact speed, «2» braked", "V1b_[mph|kmh]", _SPEED),
+        ForecastRow("«1» delta-V, «2» braked", "dV1b_[mph|kmh]", _SPEED),
+        ForecastRow("«2» delta-V, braked", "dV2b_[mph|kmh]", _SPEED),
+        *(ForecastRow(f"{vehicle(j)} mean acceleration", f"a_mean_{j}", "g") for j in (1, 2)),
     ),
     filters=(
         FilterRow("Closing speed", "closing_[mph|kmh]", "One must catch the other to strike it", above=0),

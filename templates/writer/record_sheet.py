@@ -12,9 +12,9 @@ from templates.writer.styles import Styles
 
 __all__ = ["draw_record"]
 
-_PASTED, _COMPUTED, _BETWEEN = 12, 10, 3
+_PASTED, _COMPUTED, _BETWEEN = 10, 9, 3
 """Widths of columns."""
-_READ = ((46, "Read from it"), (14, "Value"), (14, "Cell name"), (62, "Meaning"))
+_READ = ((42, "Read from it"), (10, "Value"), (13, "Cell name"), (48, "Meaning"))
 """Width and heading of the columns of what is read."""
 _TALL = 47
 

@@ -320,7 +320,7 @@ def test_the_blank_workbook_runs_as_it_is(xlmc):
     assert xlmc("verify", "mine.xlsx", "--all").code == 0
     sheet = openpyxl.load_workbook("mine.xlsx")["xlmc"]
     lists = [each for each in sheet.data_validations.dataValidation if each.type == "list"]
-    assert len(lists) == 2
+    assert len(lists) == 3
     words = sheet[lists[0].formula1.replace("$", "")]
     assert {"Uniform", "Normal", "Weibull"} <= {cell.value for (cell,) in words}
     assert xlmc("new", "blank", "mine.xlsx").code == 2  # it is not replaced

@@ -25,8 +25,9 @@ _GUIDE: Final = """\
 2. On the sheet xlmc, give each uncertain number a row under Assumptions. Its Cell is a formula that points to it, such
     as =Model!C4. Choose a Distribution from the list, and type its numbers; say in Source where they come from.
 3. Give each answer a row under Forecasts. Its Cell points to the formula.
-4. Filters reject trials that are impossible. Correlations join assumptions that vary together. Settings are of the
-    run. Delete the rows that you do not need.
+4. Filters reject trials that are impossible. Correlations join assumptions that vary together. Decisions are cells
+    that you choose: xlmc optimise finds their best values. Solve finds in every trial the number that gives a result.
+    Settings are of the run. Delete the rows that you do not need.
 5. Save the workbook, close it, and type:
         xlmc check BOOK.xlsx        shows what xlmc understood, and every mistake with its cell
         xlmc simulate BOOK.xlsx     runs it, and writes BOOK-results.xlsx

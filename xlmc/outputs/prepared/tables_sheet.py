@@ -38,6 +38,8 @@ HEADINGS: Final[Mapping[str, tuple[str, ...]]] = {
     "xlmc_forecasts": ("Name", "Cell", "Units", "Threshold"),
     "xlmc_filters": ("Name", "Cell", "At least", "At most", "Because"),
     "xlmc_correlations": ("First", "Second", "Correlation"),
+    "xlmc_decisions": ("Name", "Cell", "Low", "High", "Step", "Values", "Units"),
+    "xlmc_solve": ("Name", "Cell", "To", "By", "Low", "High", "Root"),
     "xlmc_settings": ("Setting", "Value"),
 }
 """The tables from left to right, with their columns."""
@@ -47,6 +49,8 @@ _TITLES: Final = {
     "xlmc_forecasts": "Forecasts: the answers",
     "xlmc_filters": "Filters: which trials are possible",
     "xlmc_correlations": "Rank correlations",
+    "xlmc_decisions": "Decisions: what is chosen",
+    "xlmc_solve": "Cells that are solved for in every trial",
     "xlmc_settings": "Settings of the run",
 }
 
@@ -55,6 +59,8 @@ _NOTES: Final = {
     "xlmc_forecasts": "Delete rows that are of no interest; Threshold asks for the probability above it.",
     "xlmc_filters": "A trial outside At least and At most is rejected. No row: all trials count.",
     "xlmc_correlations": "Names of two assumptions, and their rank correlation from -1 to 1.",
+    "xlmc_decisions": "Low, High and Step, or Values such as 10; 20; 50. For xlmc decide and xlmc optimise.",
+    "xlmc_solve": "Cell becomes To by changing By, between Low and High. Root: only (blank), first or last.",
     "xlmc_settings": "Blank means the usual value.",
 }
 
@@ -132,7 +138,7 @@ class _Sheet:
         for kind in kinds:
             lefts[kind] = left
             left += len(HEADINGS[kind]) + 1
-        lists = {"Distribution": [*FAMILIES], "Setting": setting_names()}
+        lists = {"Distribution": [*FAMILIES], "Root": ["only", "first", "last"], "Setting": setting_names()}
         sources = {
             heading: self._list(left + at + 1, heading, words) for at, (heading, words) in enumerate(lists.items())
         }

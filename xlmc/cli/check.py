@@ -170,7 +170,7 @@ def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> 
         table(
             "Decisions",
             ("Name", "Cell", "Units", "Values"),
-            [(d.name, str(d.cell), d.units, "; ".join(map(show, d.values))) for d in definitions.decisions],
+            [(d.name, str(d.cell), d.units, d.values_text) for d in definitions.decisions],
         )
     filters = [f for f in (*definitions.filters, *definitions.unused) if f.evidence is None]
     if filters:

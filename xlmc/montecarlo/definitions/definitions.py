@@ -287,6 +287,16 @@ class Decision:
     between: tuple[float, float] | None = None
     listed: bool = False
 
+    @property
+    def values_text(self) -> str:
+        """The values in words: `5; 6`, `20 to 60 in steps of 10`, `0 to 1`."""
+        if self.between is not None:
+            return f"{exact_text(self.between[0])} to {exact_text(self.between[1])}"
+        if self.listed or len(self.values) < 3:
+            return "; ".join(map(exact_text, self.values))
+        step = float(f"{self.values[1] - self.values[0]:.12g}")
+        return f"{exact_text(self.values[0])} to {exact_text(self.values[-1])} in steps of {exact_text(step)}"
+
 
 @dataclass(frozen=True, slots=True)
 class Correlation:

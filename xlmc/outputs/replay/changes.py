@@ -41,6 +41,7 @@ _DEFINITIONS: Final = (
     ("filters", "filter", ("name",), ("cell", "limits")),
     ("forecast_filters", "filter", ("name", "only_for"), ("cell", "limits")),
     ("checks", "check", ("name",), ("cell", "base")),
+    ("decisions", "decision", ("name",), ("cell", "value", "may be")),
     ("solves", "solution", ("name",), ("cell", "to", "by", "low", "high", "root")),
     ("correlations", "correlation", ("first", "second"), ("rank_correlation",)),
 )
@@ -55,7 +56,7 @@ _COUNTED: Final = {
 }
 _STATISTICS: Final = ("mean", "standard_deviation", "low", "high")
 
-_LATER: Final = ("checks", "forecast_filters", "solves")
+_LATER: Final = ("checks", "forecast_filters", "decisions", "solves")
 """Sections that records have where the workbook has such rows, and that older ones do not have at all."""
 
 K = TypeVar("K", bound=Hashable)

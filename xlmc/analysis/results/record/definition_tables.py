@@ -22,6 +22,7 @@ from xlmc.analysis.results.statements.in_words import (
 )
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.stating import Role
+from xlmc.montecarlo.definitions.tables.table_rows import as_text
 from xlmc.montecarlo.model.correlating import CHANGED, drawn_correlation
 from xlmc.montecarlo.statistics import Estimate, rank_correlation
 from xlmc.montecarlo.statistics.estimate import finite
@@ -37,6 +38,7 @@ __all__ = [
     "check_section",
     "correlation_section",
     "correlations_met",
+    "decision_section",
     "evidence_section",
     "filter_section",
     "forecast_filter_section",
@@ -82,6 +84,13 @@ _FORECAST_FILTER = (
     ("because", "Because"),
     ("discarded", "Discarded"),
     ("notes", "Notes"),
+)
+_DECISION = (
+    ("name", "Decision"),
+    ("cell", "Cell"),
+    ("value", "Value"),
+    ("units", "Units"),
+    ("may be", "May be"),
 )
 _SOLVE = (
     ("name", "Solution"),
@@ -243,6 +252,16 @@ def check_section(simulation: RunResult) -> Section:
         for check in simulation.checks
     )
     return Section("checks", "Checks", table=RecordTable(_CHECK, rows))
+
+
+def decision_section(simulation: RunResult) -> Section:
+    """Every decision, with what its cell holds in this run."""
+    workbook = simulation.model.workbook
+    rows = tuple(
+        (each.name, str(each.cell), as_text(workbook.content(each.cell).value), each.units, each.values_text)
+        for each in simulation.model.definitions.decisions
+    )
+    return Section("decisions", "Decisions", table=RecordTable(_DECISION, rows))
 
 
 def solve_section(simulation: RunResult) -> Section:

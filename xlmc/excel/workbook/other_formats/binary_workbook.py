@@ -46,6 +46,8 @@ def read_binary_workbook(parts: Mapping[str, bytes]) -> OldBook:
 
 
 def _read(parts: Mapping[str, bytes]) -> OldBook:
+    if _WORKBOOK not in parts:
+        raise _damaged(f"it lacks its part {_WORKBOOK}")
     rels = relationships(parts, _WORKBOOK)
     sheets, as_displayed, manual = [], False, False
     for kind, data in _records(parts[_WORKBOOK]):

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from dataclasses import replace
 from itertools import chain, repeat
 
@@ -34,6 +35,7 @@ from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.outputs.live.adjustments import NONE, Adjustments, adjustments_of, in_words, scenario_of
+from xlmc.outputs.live.frames import pair_of
 from xlmc.outputs.live.hand_over import page_of
 from xlmc.outputs.live.jobs import MOVING_TRIALS, Outcome, SupersededError
 from xlmc.outputs.live.kinds import in_kind
@@ -301,6 +303,7 @@ def test_all_tabs_are_made_of_the_run_at_rest(case):
             run = session.rest
             assert part["pair"]["x"][:5] == run.inputs[FRICTION][:5].tolist()
             assert part["pair"]["y"][:5] == run.forecasts[names[1]][:5].tolist()
+            assert_quadrants(part["pair"]["quadrants"], run.inputs[FRICTION], run.forecasts[names[1]])
         else:
             assert names[0] in part["html"]
 
@@ -343,6 +346,27 @@ def test_all_scenarios_are_compared_in_one_table(case):
     assert "as it is" in part["html"]
     expected = simulate(session._models.at_rest(session.adjustments))
     assert f"{expected.accepted:,}" in part["html"]
+
+
+def assert_quadrants(said, x, y):
+    """A quadrant's share is said as it is counted; of two medians each half of a quantity lies above its own."""
+    shares = [float(each) for each in re.findall(r"(\d+\.\d) %", said)]
+    both = 100.0 * np.mean((x > np.median(x)) & (y > np.median(y)))
+    assert shares[0] == pytest.approx(both, abs=0.051)
+    assert shares[0] + shares[1] == pytest.approx(50.0, abs=0.15)
+    assert shares[0] + shares[2] == pytest.approx(50.0, abs=0.15)
+    assert sum(shares) == pytest.approx(100.0, abs=0.21)
+    assert said.count("(median)") == 2
+
+
+def test_quadrants_are_those_of_a_threshold_where_there_is_one(readings):
+    session = Session(readings[1])
+    settle(session)
+    said = pair_of(session.rest, "speed", "distance")["quadrants"]
+    x, y = session.rest.forecasts["speed"], session.rest.forecasts["distance"]
+    assert said.startswith("Above speed 35 mph (threshold) and above distance ")
+    only_second = 100.0 * np.mean((y > np.median(y)) & (x <= 35.0))
+    assert f"only the second {only_second:.1f} %" in said
 
 
 def test_the_usual_variants_are_scenarios(case):

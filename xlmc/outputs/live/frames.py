@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Final
 from weakref import WeakKeyDictionary
 
 import numpy as np
+from numpy.typing import NDArray
 
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.statements import statements
@@ -354,10 +355,34 @@ def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | 
         "y": y[:_POINTS].tolist(),
         "trials": int(x.size),
         "correlation": finite(rank_correlation(x, y).value) if x.size > 2 else None,
+        "quadrants": _quadrants((_limit(simulation, first, x), _limit(simulation, second, y)), x, y) if x.size else "",
         "units": [_units(simulation, first), _units(simulation, second)],
         "forms": [form_json(_form(simulation, name)) for name in (first, second)],
         "together": _together(simulation, (first, second)),
     }
+
+
+def _limit(simulation: RunResult, name: str, values: NDArray[np.float64]) -> tuple[float, str]:
+    """Return the threshold of a forecast, or else the median of the trials, and what it is in words."""
+    result = simulation.results.get(name)
+    threshold = None if result is None else result.definition.threshold
+    units, form = _units(simulation, name), _form(simulation, name)
+    if threshold is not None:
+        return threshold, f"{name} {form.number(threshold)}{units and ' '}{units} (threshold)"
+    median, error = float(np.median(values)), float(np.std(values)) / math.sqrt(values.size)
+    text = form.beside(median, Estimate(median, error or None))
+    return median, f"{name} {text}{units and ' '}{units} (median)"
+
+
+def _quadrants(above: Sequence[tuple[float, str]], x: NDArray[np.float64], y: NDArray[np.float64]) -> str:
+    """Say in which shares of the trials both quantities, `(n,)` each, lie above a limit each, only one, or neither."""
+    right, upper = x > above[0][0], y > above[1][0]
+    counts = (right & upper, right & ~upper, upper & ~right, ~(right | upper))
+    both, first, second, neither = (f"{100.0 * np.count_nonzero(each) / x.size:.1f} %" for each in counts)
+    return (
+        f"Above {above[0][1]} and above {above[1][1]}: {both} of the trials; only the first {first}, "
+        f"only the second {second}, neither {neither}."
+    )
 
 
 def _together(simulation: RunResult, names: tuple[str, str]) -> list[dict[str, Any]]:

@@ -10,6 +10,7 @@ class PairView {
     this.selects = [0, 1].map((i) => make("select", { "aria-label": i ? "upwards" : "to the right",
       on: { change: () => this.choose() } }));
     this.said = make("p", { class: "pair-said" });
+    this.quadrants = make("p", { class: "remark" });
     this.chart = make("div", { class: "chart", role: "img", "aria-label": "No trials yet" });
     this.overlay = make("div", { class: "overlay" });
     const save = pictures(this.chart, "the pair", () => this.scatter && saveSvg(this.scatter, this.chart));
@@ -17,7 +18,7 @@ class PairView {
       if (this.pair && this.scatter && this.chart.clientWidth && this.scatter.width !== widthOf(this.chart)) this.draw(this.pair);
     }).observe(this.chart);
     place.append(make("p", { class: "choices" }, make("label", {}, "To the right ", this.selects[0]),
-      make("label", {}, "Upwards ", this.selects[1])), this.said, this.chart, save, this.overlay);
+      make("label", {}, "Upwards ", this.selects[1])), this.said, this.quadrants, this.chart, save, this.overlay);
   }
 
   /** Names to choose from: forecasts first. */
@@ -43,6 +44,7 @@ class PairView {
     const shown = Math.min(pair.x.length, MOST_DOTS);
     const related = pair.correlation === null ? "" : `; rank correlation ${pair.correlation.toFixed(2)}`;
     this.said.textContent = `${countText(shown)} of ${countText(pair.trials)} accepted trials${related}`;
+    this.quadrants.textContent = pair.quadrants;
     this.chart.setAttribute("aria-label", `${pair.second} against ${pair.first}: ${this.said.textContent}`);
     this.pair = pair;
     this.draw(pair);

@@ -365,6 +365,11 @@ def test_quadrants_are_those_of_a_threshold_where_there_is_one(readings):
     said = pair_of(session.rest, "speed", "distance")["quadrants"]
     x, y = session.rest.forecasts["speed"], session.rest.forecasts["distance"]
     assert said.startswith("Above speed 35 mph (threshold) and above distance ")
+    still = Session(readings[1])
+    still.receive(change("t", "frozen", True))
+    still.receive(change("v", "frozen", True))
+    settle(still)
+    assert pair_of(still.rest, "speed", "distance")["quadrants"] == ""
     only_second = 100.0 * np.mean((y > np.median(y)) & (x <= 35.0))
     assert f"only the second {only_second:.1f} %" in said
 

@@ -355,7 +355,7 @@ def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | 
         "y": y[:_POINTS].tolist(),
         "trials": int(x.size),
         "correlation": finite(rank_correlation(x, y).value) if x.size > 2 else None,
-        "quadrants": _quadrants((_limit(simulation, first, x), _limit(simulation, second, y)), x, y) if x.size else "",
+        "quadrants": _quadrants(simulation, (first, second), x, y),
         "units": [_units(simulation, first), _units(simulation, second)],
         "forms": [form_json(_form(simulation, name)) for name in (first, second)],
         "together": _together(simulation, (first, second)),
@@ -374,13 +374,18 @@ def _limit(simulation: RunResult, name: str, values: NDArray[np.float64]) -> tup
     return median, f"{name} {text}{units and ' '}{units} (median)"
 
 
-def _quadrants(above: Sequence[tuple[float, str]], x: NDArray[np.float64], y: NDArray[np.float64]) -> str:
-    """Say in which shares of the trials both quantities, `(n,)` each, lie above a limit each, only one, or neither."""
-    right, upper = x > above[0][0], y > above[1][0]
+def _quadrants(simulation: RunResult, names: tuple[str, str], x: NDArray[np.float64], y: NDArray[np.float64]) -> str:
+    """Say in which shares of the trials both quantities, `(n,)` each, lie above a limit each, only one, or neither;
+    nothing if one of them does not vary.
+    """
+    if not x.size or not np.ptp(x) or not np.ptp(y):
+        return ""
+    (right_of, first_said), (over, second_said) = _limit(simulation, names[0], x), _limit(simulation, names[1], y)
+    right, upper = x > right_of, y > over
     counts = (right & upper, right & ~upper, upper & ~right, ~(right | upper))
     both, first, second, neither = (f"{100.0 * np.count_nonzero(each) / x.size:.1f} %" for each in counts)
     return (
-        f"Above {above[0][1]} and above {above[1][1]}: {both} of the trials; only the first {first}, "
+        f"Above {first_said} and above {second_said}: {both} of the trials; only the first {first}, "
         f"only the second {second}, neither {neither}."
     )
 

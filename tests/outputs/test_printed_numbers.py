@@ -11,7 +11,7 @@ import json
 import math
 import re
 import subprocess
-from datetime import date
+from datetime import date, timedelta
 from functools import cache
 from html.parser import HTMLParser
 from pathlib import Path
@@ -58,6 +58,7 @@ def write_full_book(path, *, filtered):
     sheet = book["Model"]
     sheet["B30"], sheet["B31"] = 30, 5
     sheet["B10"], sheet["B11"] = "=B1^2/10*(1+B30/1000)", "=B2*(1+B1/100)-B30*B31*100"
+    sheet["B6"].number_format = "yyyy-mm-dd"  # an assumption that is a date
     for number in range(40):
         sheet.cell(number + 1, 8, round(20 + 5 * math.sin(number * 1.7), 3))
     add_tables(book.create_sheet("More"), {"xlmc_decisions": DECISIONS, "xlmc_scenarios": SCENARIOS})
@@ -258,3 +259,18 @@ def test_a_number_on_a_sheet_is_a_number_of_the_json(printed, command):
                     if not is_close(cell.value, known, half + 1e-300):
                         lost.append((sheet.title, cell.coordinate, cell.value))
     assert not lost
+
+
+def test_an_assumption_that_is_a_date_is_told_as_one(printed):
+    document, texts, path = printed("simulate")
+    start = next(each for each in document["assumptions"] if each["name"] == "Start")
+    assert start["parameters"] == "Low 2025-12-09, High 2026-06-27"
+    for text in (*texts.values(), xlmc_check(path.parent / "filtered.xlsx")):
+        assert "46,000" not in text
+    mean = date(1899, 12, 30) + timedelta(days=int(start["accepted"]["mean"]["value"]))
+    assert all(f"{mean} ± " in re.sub(r"\s+", " ", texts[ending]) for ending in ("html", "pdf", "docx"))
+
+
+def xlmc_check(book):
+    """What `xlmc check` prints."""
+    return CliRunner().invoke(xlmc, ["check", str(book)], env={"COLUMNS": "200"}).output

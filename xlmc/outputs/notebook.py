@@ -14,6 +14,7 @@ from xlmc.outputs.histogram import figures_of
 from xlmc.outputs.summary import error_sentence, rejection_rows, summarise, summary_text
 
 if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.definitions import Assumption
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.histogram import Histogram
@@ -31,10 +32,17 @@ _LINE: Final = "color-mix(in srgb,currentColor 20%,transparent)"
 _CELL: Final = f"padding:.15em .7em;text-align:{{}};border-bottom:1px solid {_LINE}"
 
 
+def _base_text(model: CompiledModel, assumption: Assumption) -> str:
+    if assumption.base is None:
+        return ""
+    dated = model.dated.get(assumption.name)
+    return show(assumption.base) if dated is None else dated.number(assumption.base)
+
+
 def model_html(model: CompiledModel) -> str:
     """Return assumptions, forecasts and filters as HTML; colours are those of the notebook."""
     assumptions = [
-        (a.name, distribution_text(a), "" if a.base is None else show(a.base), a.units, "frozen" * a.frozen, a.source)
+        (a.name, distribution_text(a), _base_text(model, a), a.units, "frozen" * a.frozen, a.source)
         for a in model.assumptions
     ]
     forecasts = [(f.name, f.units, str(f.cell)) for f in model.forecasts]

@@ -29,6 +29,7 @@ class Vocabulary:
         such_as: an example of a filter, after a comma; may be empty.
         drawing: what the workbook draws.
         checks: what the checks are called.
+        misfits: why a model may not apply, in parentheses after a space; may be empty.
     """
 
     model_error: str
@@ -38,6 +39,7 @@ class Vocabulary:
     such_as: str
     drawing: str
     checks: str
+    misfits: str = ""
 
     def fill(self, text: str) -> str:
         """Return the text with these words in place of their names in braces."""
@@ -52,6 +54,7 @@ CRASH: Final = Vocabulary(
     ", such as a restitution between 0 and 1",
     "scene",
     "physics checks",
+    " (second impact, tyre forces, a pulse that was cut off)",
 )
 NEUTRAL: Final = Vocabulary("model error", "is right", "case", "a reader", "", "drawing", "checks")
 

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.definitions.evidence import Bell
+from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.diagnostics.evidence_trials import EvidenceTrials, evidence_trials
 from xlmc.montecarlo.model.plain_words import list_of
 from xlmc.montecarlo.statistics import Estimate, Sample
@@ -498,10 +499,10 @@ def _conflict(found: Agreement, names: Sequence[str]) -> str:
             message = f"the evidence is inconsistent: no trial agrees with {every} together"
     alone = list_of([f"{each.alone.value * 100.0:.2g} %" for each in shown])
     they = "it keeps" if len(shown) == 1 else "they keep"
+    misfits = vocabulary_of(found.model.workbook).misfits
     return (
         f"{message}. Alone {they} {alone} of the trials that pass the filters. Either a measurement is wrong by more "
-        "than its stated error, or a range of an assumption is too narrow, or the model does not apply (second impact, "
-        "tyre forces, a pulse that was cut off)"
+        f"than its stated error, or a range of an assumption is too narrow, or the model does not apply{misfits}"
     )
 
 

@@ -24,11 +24,13 @@ from xlmc.excel.formula import ir
 from xlmc.excel.functions import Kind
 from xlmc.excel.functions.values import Value
 from xlmc.excel.workbook.workbook import Workbook
+from xlmc.montecarlo.definitions import stating
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Forecast
 from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.stating import Kind as StatedAs
 from xlmc.montecarlo.distributions.spelling import name_key
-from xlmc.montecarlo.model.cell_forms import formats_of
+from xlmc.montecarlo.model.cell_forms import formats_of, forms_of
 from xlmc.montecarlo.model.correlating import (
     copula_groups,
     copula_notices,
@@ -570,6 +572,13 @@ class CompiledModel:
         """The number format of each forecast's cell, by name; `General` where it has none or the file does not say."""
         hosts = [host_of(each.cell) for each in self.forecasts]
         return {f.name: code for f, code in zip(self.forecasts, formats_of(self.workbook, hosts), strict=True)}
+
+    @cached_property
+    def dated(self) -> dict[str, Form]:
+        """The form of each assumption whose cell shows dates or times, by name."""
+        hosts = [host_of(each.cell) for each in self.assumptions]
+        forms = zip(self.assumptions, forms_of(self.workbook, hosts), strict=True)
+        return {each.name: form for each, form in forms if form.kind is stating.Kind.DATE}
 
     def check_program(self) -> Program:
         """Make the cells of the checks filters, a function of the live assumptions; others stand at their

@@ -4,17 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import Final, TypeGuard
 
-from xlmc.excel.address import Cell
+from xlmc.excel.address import Cell, host_of
 from xlmc.excel.workbook.workbook import Workbook
-from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter
+from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter, Parameter
+from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.model.cell_forms import forms_of
 from xlmc.montecarlo.statistics.number_text import exact_text
 
 __all__ = ["with_stated_formulas"]
 
 _LONGEST: Final = 40
 """Characters of a formula; a longer one is named by its cell."""
+
+_FIRST_DATE: Final = 10_000.0
+"""Days: from 1927 on. A smaller number in the row of a date is a span, such as its standard deviation."""
 
 Values = Callable[[Sequence[Cell]], Mapping[Cell, float]]
 
@@ -30,6 +35,7 @@ def with_stated_formulas(
         definitions: the same, with numbers where no assumption may vary them.
         values: computes cells at the base case, those that can be.
     """
+    definitions = _with_dates(workbook, definitions)
     limits = (*definitions.filters, *definitions.forecast_filters)
     asked: list[Assumption | Filter] = [*definitions.assumptions, *limits, *given.assumptions]
     if not any(each.formulas for each in asked):
@@ -69,7 +75,26 @@ def _assumption(
         number = assumption.given.get(key)
         value = known.get(cell) if isinstance(number, Cell) or number is None else number
         stated[key] = _text(workbook, cell, value)
-    return replace(assumption, stated=stated) if stated else assumption
+    return replace(assumption, stated={**assumption.stated, **stated}) if stated else assumption
+
+
+def _with_dates(workbook: Workbook, definitions: Definitions) -> Definitions:
+    """Return the definitions with the dates of assumptions whose cells show dates."""
+    asked = [each for each in definitions.assumptions if any(map(_may_be_a_date, each.given.values()))]
+    forms = zip(asked, forms_of(workbook, [host_of(each.cell) for each in asked]), strict=True) if asked else ()
+    dated = {
+        each.name: {key: form.number(value) for key, value in each.given.items() if _may_be_a_date(value)}
+        for each, form in forms
+        if form.kind is Kind.DATE
+    }
+    if not dated:
+        return definitions
+    assumptions = (replace(each, stated=dated.get(each.name, each.stated)) for each in definitions.assumptions)
+    return replace(definitions, assumptions=tuple(assumptions))
+
+
+def _may_be_a_date(value: Parameter) -> TypeGuard[float]:
+    return isinstance(value, int | float) and value >= _FIRST_DATE
 
 
 def _filter(workbook: Workbook, filter_: Filter, known: Mapping[Cell, float]) -> Filter:

@@ -25,7 +25,8 @@ def shape_chart(simulation: RunResult, name: str) -> Chart | None:
     found = shapes_of(simulation, name)
     if found is None:
         return None
-    shape = Shape(*(tuple(map(float, each)) for each in (found.edges, found.before, found.accepted)))
+    edges, before, accepted = (tuple(map(float, each)) for each in (found.edges, found.before, found.accepted))
+    shape = Shape(edges, before, accepted, simulation.model.dated.get(name, PLAIN))
     return Chart("", "", shape, f"{name}: before filtering pale, accepted as a line", 28.0)
 
 

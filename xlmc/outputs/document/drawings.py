@@ -14,7 +14,7 @@ from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
-from xlmc.montecarlo.statistics.number_text import two_digit_exponent
+from xlmc.montecarlo.statistics.number_text import number_text, two_digit_exponent
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Drawing, Line, Lines, Shape
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.sheets.styles import DARK, GRID, INK, LIGHT
@@ -208,7 +208,8 @@ def _shape(chart: Chart, shown: Shape) -> Drawing:
         path_of([(1.0, bottom), *outline, (width - 1.0, bottom)], DARK, 1.3),
         line_to(1, bottom, width - 1, bottom, INK),
     ]
-    first, last = (end_text(end, high - low) for end in (low, high))
+    plain = shown.form == PLAIN
+    first, last = (end_text(end, high - low) if plain else shown.form.number(end) for end in (low, high))
     found.append(text_at(1.0, height - 2, first, anchor="start", size=13))
     found.append(text_at(width - 1.0, height - 2, last, anchor="end", size=13))
     return drawing(found, width, height, f"{chart.said}, from {first} to {last}", chart.width)
@@ -221,7 +222,7 @@ def end_text(end: float, span: float) -> str:
     ('0', '0.6')
     """
     digits = 2 - math.floor(math.log10(span)) if span > 0 else 6
-    return f"{round(end, digits) + 0.0:.10g}"
+    return number_text(round(end, digits) + 0.0, 10)
 
 
 def _near(value: float, low: float, high: float) -> float:

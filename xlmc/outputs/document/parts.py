@@ -148,11 +148,14 @@ class Lines:
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """How often an assumption has each value: `(b + 1,)` edges, `(b,)` shares before filtering and accepted."""
+    """How often an assumption has each value: `(b + 1,)` edges, `(b,)` shares before filtering and accepted, and how
+    its values are written.
+    """
 
     edges: tuple[float, ...]
     before: tuple[float, ...]
     accepted: tuple[float, ...]
+    form: Form = PLAIN
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,12 +22,13 @@ from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenari
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.measures import noise
 from xlmc.errors import capitalised
+from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.diagnostics.checking import checks_sentence
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.statistics import proportion
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text
 from xlmc.outputs.document.charts import influence_chart, shape_chart, shares_chart
 from xlmc.outputs.document.drawings import forecast_drawing
 from xlmc.outputs.document.equations import equations_of
@@ -368,12 +369,13 @@ def _assumption_row(simulation: RunResult, each: Assumption) -> list[Content]:
         base = "" if each.base is None else f"{each.base:.9g}"
         return [name, words, f"{status(simulation.model, each.name, each.frozen)}: {base}", _NONE, _NONE]
     both = (found.prior, found.accepted) if simulation.filters_act else (found.prior,)
+    form = simulation.model.dated.get(each.name, PLAIN)
     shape = shape_chart(simulation, each.name)
     return [
         name,
         words,
-        "\n".join(estimate_text(marginal.mean) for marginal in both),
-        "\n".join(estimate_text(marginal.standard_deviation) for marginal in both),
+        "\n".join(form.estimate(marginal.mean) for marginal in both),
+        "\n".join(form.spread(marginal.standard_deviation) for marginal in both),
         shape or _NONE,
     ]
 
@@ -424,8 +426,18 @@ def _influence_rows(found: ForecastSensitivity, most: int) -> Iterator[tuple[str
 
 
 def explained_text(found: Influence) -> str:
-    """Return the share of variance explained as text, `at least 81.4 ± 1.2 %` where it is a lower bound."""
-    return f"{'at least ' if found.explained_at_least else ''}{share_text(found.explained)}"
+    """Return the share of variance explained as text, `at least 81.4 ± 1.2 %` where it is a lower bound; to hundredths
+    of a percent, which no decision needs, where it is known better.
+    """
+    share, error = found.explained.value, found.explained.error
+    text = share_text(found.explained)
+    if error is not None and math.isfinite(share) and error < _KNOWN_WELL:
+        text = f"{fixed_text(100.0 * share, 2)} %"
+    return f"{'at least ' if found.explained_at_least else ''}{text}"
+
+
+_KNOWN_WELL: Final = 5e-5
+"""The error of a share that two decimals of a percentage do not show."""
 
 
 def _checks(material: Material) -> Iterator[Block]:

@@ -10,6 +10,7 @@ from xlmc.analysis.results.statements import pairs_of
 from xlmc.analysis.results.statements.in_words import distribution_text, number_text, status
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.excel.workbook.printable import printable
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.document.charts import shape_chart
 from xlmc.outputs.document.element import EMPTY, Html, element
@@ -156,15 +157,20 @@ def _remarks(simulation: RunResult) -> Iterator[str]:
 def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
     """Return an assumption's name above two rows, in a table body of their own so that they stay together."""
     found = filter_effect_of(simulation, assumption.name)
+    form = simulation.model.dated.get(assumption.name, PLAIN)
     shape = EMPTY if found is None else _shape(simulation, assumption.name)
-    named = element("tr", element("th", shape, *_name_line(assumption), scope="rowgroup", colspan=str(_COLUMNS)))
+    named = element("tr", element("th", shape, *_name_line(assumption, form), scope="rowgroup", colspan=str(_COLUMNS)))
     if found is None:
         why = element("td", status(simulation.model, assumption.name, assumption.frozen), colspan=str(_COLUMNS))
         return element("tbody", named, element("tr", why))
     if not simulation.filters_act:
-        return element("tbody", named, element("tr", *_marginal(found.prior, "all"), element("td"), element("td")))
-    before = element("tr", *_marginal(found.prior, "before"), element("td"), element("td"))
-    return element("tbody", named, before, element("tr", *_marginal(found.accepted, "accepted"), *_changes(found)))
+        return element(
+            "tbody", named, element("tr", *_marginal(found.prior, "all", form), element("td"), element("td"))
+        )
+    before = element("tr", *_marginal(found.prior, "before", form), element("td"), element("td"))
+    return element(
+        "tbody", named, before, element("tr", *_marginal(found.accepted, "accepted", form), *_changes(found))
+    )
 
 
 def _shape(simulation: RunResult, name: str) -> Html:
@@ -173,18 +179,20 @@ def _shape(simulation: RunResult, name: str) -> Html:
     return EMPTY if found is None else picture_html(found, "shape")
 
 
-def _name_line(assumption: Assumption) -> Iterator[Html | str]:
-    base = NONE if assumption.base is None else f"{assumption.base:.9g}"
+def _name_line(assumption: Assumption, form: Form) -> Iterator[Html | str]:
+    base = NONE if assumption.base is None else form.number(assumption.base)
     yield element("b", assumption.name, f", {assumption.units}" if assumption.units else "")
     yield " "
     yield element("small", f"{assumption.cell}, base case {base}. {distribution_text(assumption)}. {assumption.source}")
 
 
-def _marginal(found: Marginal, when: str) -> Iterator[Html]:
+def _marginal(found: Marginal, when: str, form: Form) -> Iterator[Html]:
     yield element("td", when)
     yield element("td", number(found.trials, f"{found.trials:,}"), class_="number")
-    for estimate in (found.mean, found.standard_deviation, *found.percentiles.values()):
-        yield element("td", estimate_html(estimate), class_="number")
+    yield element("td", estimate_html(found.mean, form.estimate), class_="number")
+    yield element("td", estimate_html(found.standard_deviation, form.spread), class_="number")
+    for estimate in found.percentiles.values():
+        yield element("td", estimate_html(estimate, form.estimate), class_="number")
 
 
 def _changes(found: FilterEffect) -> Iterator[Html]:

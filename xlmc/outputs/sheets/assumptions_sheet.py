@@ -14,6 +14,7 @@ import numpy as np
 
 from xlmc.analysis.results.record.definition_tables import correlations_met
 from xlmc.analysis.results.statements.in_words import distribution_text, status
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.filter_effect import DRAWN, FilterEffect, Marginal, filter_effect_of, shapes_of
 from xlmc.outputs.sheets import cells
@@ -165,7 +166,8 @@ def _write_assumption(page: Page, simulation: RunResult, assumption: Assumption)
     before, accepted, change = _statistics(simulation, assumption)
     starts = [0, *range(_NAMED - 1, _NAMED + len(before))]
     name = f"{assumption.name} ({assumption.units})" if assumption.units else assumption.name
-    base = Shown(cells.NONE if assumption.base is None else assumption.base)
+    form = simulation.model.dated.get(assumption.name, PLAIN)
+    base = Shown(cells.NONE) if assumption.base is None else cells.exact(assumption.base, form=form)
     page.line([Shown(name, look="name"), base, *before], starts)
     words = Shown(distribution_text(assumption), look="second")
     page.line([words, Shown(str(assumption.cell), look="second"), *accepted], starts)
@@ -174,30 +176,33 @@ def _write_assumption(page: Page, simulation: RunResult, assumption: Assumption)
 
 def _statistics(simulation: RunResult, assumption: Assumption) -> tuple[list[Shown], list[Shown], list[Shown]]:
     """Return the cells of the draws before filtering, of the accepted ones and of the change; or why there are none."""
-    found = filter_effect_of(simulation, assumption.name)
+    found, form = filter_effect_of(simulation, assumption.name), simulation.model.dated.get(assumption.name, PLAIN)
     if found is None:
         why = Shown(status(simulation.model, assumption.name, assumption.frozen))
         return [why, *_blank(_STATISTICS + 1)], _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)
     if not simulation.filters_act:
-        return [Shown("all"), *_before(found)[1:]], _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)
-    return _before(found), _accepted(found), _change(found)
+        return [Shown("all"), *_before(found, form)[1:]], _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)
+    return _before(found, form), _accepted(found, form), _change(found)
 
 
-def _before(found: FilterEffect) -> list[Shown]:
-    return [Shown("before"), cells.count(found.prior.trials), *_marginal(found.prior)]
+def _before(found: FilterEffect, form: Form) -> list[Shown]:
+    return [Shown("before"), cells.count(found.prior.trials), *_marginal(found.prior, form)]
 
 
-def _accepted(found: FilterEffect) -> list[Shown]:
+def _accepted(found: FilterEffect, form: Form) -> list[Shown]:
     return [
         Shown("accepted", look="second"),
         Shown(found.accepted.trials, cells.count(0).format, "second number"),
-        *_marginal(found.accepted, "second number", "second error"),
+        *_marginal(found.accepted, form, "second number", "second error"),
     ]
 
 
-def _marginal(found: Marginal, look: str = "number", error_look: str = "error") -> list[Shown]:
-    estimates = (found.mean, found.standard_deviation, *found.percentiles.values())
-    return [shown for estimate in estimates for shown in cells.estimate(estimate, look, error_look)]
+def _marginal(found: Marginal, form: Form, look: str = "number", error_look: str = "error") -> list[Shown]:
+    spread = cells.estimate(found.standard_deviation, look, error_look, form=form, spread=True)
+    mean, *others = (
+        cells.estimate(each, look, error_look, form=form) for each in (found.mean, *found.percentiles.values())
+    )
+    return [*mean, *spread, *(shown for each in others for shown in each)]
 
 
 def _change(found: FilterEffect) -> list[Shown]:

@@ -7,7 +7,7 @@ from html import escape
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import distribution_text, limits_text
-from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.outputs.document import further_sections
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import figures_of
@@ -36,7 +36,7 @@ def _base_text(model: CompiledModel, assumption: Assumption) -> str:
     if assumption.base is None:
         return ""
     dated = model.dated.get(assumption.name)
-    return show(assumption.base) if dated is None else dated.number(assumption.base)
+    return (dated or PLAIN).number(assumption.base)
 
 
 def model_html(model: CompiledModel) -> str:

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.sensitivity.one_at_a_time import one_at_a_time
 from xlmc.errors import SimulationError
-from xlmc.montecarlo.definitions.forms import Form
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.keywords import forecast_named
@@ -264,6 +264,7 @@ def _before_after(axes: Axes, simulation: RunResult, name: str | None) -> None:
     axes.set_ylabel("Density")
     axes.legend(loc="best", fontsize=8, frameon=False)
     _plain(axes, units or "value")
+    _write_form(axes.xaxis, simulation.model.dated.get(chosen, PLAIN))
 
 
 def _moved(simulation: RunResult, name: str) -> float:
@@ -306,12 +307,16 @@ def _title(simulation: RunResult) -> str:
 
 def _write_numbers(axis: Axis, each: Drawn) -> None:
     """Write the numbers beside an axis as the cell of the forecast shows them."""
-    from matplotlib.ticker import MaxNLocator, MultipleLocator
-
-    form = each.answer.form
     if each.answer.yes is not None:
         axis.set_ticks([0.0, 1.0], ["no", "yes"])
-    elif form.kind not in (Kind.NUMBER, Kind.WHOLE):
+    else:
+        _write_form(axis, each.answer.form)
+
+
+def _write_form(axis: Axis, form: Form) -> None:
+    from matplotlib.ticker import MaxNLocator, MultipleLocator
+
+    if form.kind not in (Kind.NUMBER, Kind.WHOLE):
         axis.set_major_locator(MaxNLocator(_STEPS))
         if form.kind is Kind.DATE:
             low, high = axis.get_view_interval()

@@ -120,7 +120,7 @@ def _answer(material: Material) -> Iterator[Block]:
     told = [each for each in statements(simulation) if each.forecast in material.forecasts]
     if told:
         yield Bullets(tuple(f"{each.text}." for each in told))
-        yield Paragraph(meaning(simulation.model.workbook), "small")
+        yield Paragraph(meaning(simulation.model.workbook, told), "small")
     rows = [row for row in summarise(simulation) if row.name in material.forecasts]
     yield _answers(material, rows)
     yield from _texts(material, rows)

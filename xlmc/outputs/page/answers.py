@@ -58,7 +58,7 @@ def _statements(simulation: RunResult) -> Iterator[Html]:
     """Yield the sentences and what they mean; nothing if all forecasts are diagnostics."""
     if said := statements(simulation):
         yield element("ul", *(element("li", *_statement(each)) for each in said), class_="statements")
-        yield element("p", meaning(simulation.model.workbook), class_="remark")
+        yield element("p", meaning(simulation.model.workbook, said), class_="remark")
 
 
 def _statement(statement: Statement) -> Iterator[Html | str]:

@@ -52,7 +52,7 @@ def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None
         for statement in said:
             page.wide(f"{statement.text}.", "quote", LAST)
         page.row += 1
-        page.wide(meaning(simulation.model.workbook), "remark", LAST)
+        page.wide(meaning(simulation.model.workbook, said), "remark", LAST)
     page.heading("Certainty of ranges")
     write_ranges(page, simulation)
     _write_own_ranges(page, simulation, trials)

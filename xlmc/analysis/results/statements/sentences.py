@@ -6,7 +6,7 @@ Each share stands with its error, and no number has more digits than its error s
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
@@ -35,18 +35,31 @@ __all__ = ["Certainty", "Statement", "certainties", "meaning", "stated_range", "
 LIKELIER: Final = 0.55
 """The largest share of a range that is asked for to say where the answer more probably lies than not, such as 51 %."""
 
-_MEANING: Final = (
+_SHARES: Final = (
     "Each share is a share of the accepted trials, counted for the range as it is printed here, and has its standard "
-    "error beside it. “More probable than not” is said only where the whole 95 % interval of the share lies above "
-    "50 %; ends are rounded outwards until it does. Of a bound one side alone is stated, and a share of trials in "
-    "which the bound lies there is a least probability. All of this holds only if the model and the ranges of its "
-    "assumptions are right: the error given is Monte Carlo error, not {model_error}."
+    "error beside it."
+)
+_LIKELY: Final = (
+    "“More probable than not” is said only where the whole 95 % interval of the share lies above 50 %; ends are "
+    "rounded outwards until it does."
+)
+_BOUNDS: Final = (
+    "Of a bound one side alone is stated, and a share of trials in which the bound lies there is a least probability."
+)
+_HOLDS: Final = (
+    "All of this holds only if the model and the ranges of its assumptions are right: the error given is Monte Carlo "
+    "error, not {model_error}."
 )
 
 
-def meaning(workbook: Workbook) -> str:
-    """Return the note that stands below the sentences of a workbook."""
-    return vocabulary_of(workbook).fill(_MEANING)
+def meaning(workbook: Workbook, found: Sequence[Statement]) -> str:
+    """Return the note that stands below the sentences of a workbook, on what these say."""
+    notes = [_SHARES]
+    if any("more probable than not" in each.text for each in found):
+        notes.append(_LIKELY)
+    if any(each.kind == "bound" for each in found):
+        notes.append(_BOUNDS)
+    return vocabulary_of(workbook).fill(" ".join([*notes, _HOLDS]))
 
 
 @dataclass(frozen=True, slots=True)

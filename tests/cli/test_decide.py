@@ -96,3 +96,23 @@ def test_the_record_of_a_run_says_what_was_decided(xlmc, book, tmp_path):
     assert rows[at + 1][-1] == "20 to 60 in steps of 10"
     assert rows[at + 2][-1] == "5; 6"
     assert xlmc("replay", tmp_path / "run.xlsx").code == 0
+
+
+def test_what_is_the_same_in_every_trial_is_sure_and_ties_are_told(xlmc, tmp_path):
+    """A cost of 100 times the order is the same difference in each trial; the colour changes nothing."""
+    path = tmp_path / "book.xlsx"
+    sheets = {
+        "Model": [[0.1], [40], [1], ["=A1+100.1*A2"], ["=A1*2"]],
+        "A": [["Name", "Cell", "Low", "High"], ["price", "=Model!A1", 0, 1]],
+        "F": [["Name", "Cell"], ["cost", "=Model!A4"], ["fee", "=Model!A5"]],
+        "D": [["Name", "Cell", "Values"], ["order", "=Model!A2", "20; 80"], ["colour", "=Model!A3", "1; 2"]],
+    }
+    tables = {"xlmc_assumptions": "A!A1:D2", "xlmc_forecasts": "F!A1:B3", "xlmc_decisions": "D!A1:C3"}
+    workbook_of(sheets, tables).save(path)
+    outcome = xlmc("decide", path, "-n", "2000", "--quiet")
+    words = " ".join(outcome.out.split())
+    assert "with order = 80, colour = 1, and the same with order = 80, colour = 2." in words
+    assert "Whatever order and colour are, these stay as they are: fee." in words
+    assert "cannot tell" not in words
+    one = " ".join(xlmc("decide", path, "-n", "2000", "--quiet", "--table", "order").out.split())
+    assert "that is 6,006 ± 0 above the next, order = 20." in one

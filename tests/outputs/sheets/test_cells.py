@@ -6,8 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from xlmc.montecarlo.definitions.forms import Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate, format_estimate, proportion
-from xlmc.outputs.sheets.cells import estimate, paired_format, share_format, spread_format
+from xlmc.outputs.sheets.cells import estimate, paired_format, share_format, shown_text, spread_format
 
 PAIRED = [
     (11.79946, 0.01256, "#,##0.000"),
@@ -73,3 +75,17 @@ def test_formats_of_single_trials_follow_their_spread(spread, expected):
 def test_an_error_is_never_shown_as_0(value, error, expected):
     """A large value leaves no room for the decimals of a small error beside it."""
     assert tuple(cell.format for cell in estimate(Estimate(value, error))) == expected
+
+
+@pytest.mark.parametrize(
+    ("days", "error", "text"),
+    [(-0.003968, 0.00012, "-0.00397 days"), (0.0156, 0.00012, "0:22:28"), (-2.561, 0.29, "-2.56 days")],
+)
+def test_differences_of_times_are_spans_that_excel_can_show(days, error, text):
+    shown, _ = estimate(Estimate(days, error), form=Form(Kind.DATE, "[h]:mm"), spread=True)
+    assert shown_text(shown) == text
+
+
+def test_a_time_before_the_first_one_is_a_number():
+    shown, _ = estimate(Estimate(-0.25, 0.01), form=Form(Kind.DATE, "[h]:mm"))
+    assert shown_text(shown) == "-0.25"

@@ -90,7 +90,7 @@ def test_a_book_without_decisions_is_refused_with_the_cure(xlmc, case_study):
 def test_the_record_of_a_run_says_what_was_decided(xlmc, book, tmp_path):
     assert xlmc("simulate", book, "-n", "500", "-o", tmp_path / "run.xlsx").code == 0
     sheet = openpyxl.load_workbook(tmp_path / "run.xlsx")["Record"]
-    rows = [[cell for cell in row if cell is not None] for row in sheet.iter_rows(values_only=True)]
+    rows = [[cell for cell in row[1:] if cell is not None] for row in sheet.iter_rows(values_only=True)]
     at = rows.index(["Decision", "Cell", "Value", "Units", "May be"])
     assert rows[at + 1][:3] == ["Order", "Inputs!B5", "50"]
     assert rows[at + 1][-1] == "20 to 60 in steps of 10"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 from collections.abc import Iterator
 from functools import partial
@@ -167,6 +168,9 @@ def _sentences(found: Optimised) -> Iterator[str]:
     measure = found.goal.measure
     extreme = "largest" if found.goal.maximise else "smallest"
     best = _with_values(found, found.best)
+    if math.isnan(found.found.value):
+        yield f"{_capital(measure.text)} is a number with none of the {found.tried:,} candidates that were tried."
+        return
     yield f"{_capital(measure.text)} is {extreme}, {measure.shown(found.found)}, with {best}."
     for each in found.held:
         yield _held_text(each)
@@ -185,7 +189,8 @@ def _sentences(found: Optimised) -> Iterator[str]:
         more = f"; and {len(alike) - 4} more" if len(alike) > 4 else ""
         yield f"These trials cannot tell it from {named}{more}."
     if found.as_it_is is not None:
-        yield f"With the workbook's own decisions {measure.text} is {measure.shown(found.as_it_is)}."
+        own = "no number" if math.isnan(found.as_it_is.value) else measure.shown(found.as_it_is)
+        yield f"With the workbook's own decisions {measure.text} is {own}."
     if found.ended:
         yield f"The search ended early, because {found.ended}: this is the best that was found by then."
 

@@ -116,6 +116,19 @@ def test_candidates_that_give_the_same_are_not_told_apart(book):
     assert found.confidence > 0.99
 
 
+def test_filters_that_leave_few_trials_need_more_of_them(book):
+    """One of 500 trials has such a demand, 99.8 or more: all that is ordered is sold."""
+    path = book(["Order", "=Inputs!B6", 0, 100, 25, None], filters=(["Great demand", "=Inputs!B2", 99.8],))
+    found = xlmc.load(path).optimise(maximise="mean of Profit", trials=20_000)
+    assert found.values == {"Order": 100}
+    assert found.confidence > 0.99
+    nothing = book(["Order", "=Inputs!B6", 0, 100, 25, None], filters=(["Never", "=Inputs!B2", 101],))
+    found = xlmc.load(nothing).optimise(maximise="mean of Profit", trials=500)
+    assert math.isnan(found.found.value)
+    assert not found.meets
+    assert not found.rivals
+
+
 def test_the_smallest_is_found_too(book):
     found = xlmc.load(book()).optimise(
         minimise="SD of Profit", subject_to=["mean of Profit >= 30"], trials=40_000, seed=2

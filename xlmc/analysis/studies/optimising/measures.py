@@ -392,7 +392,7 @@ class _Parsing:
         at = self._reader.column(number)
         if found["mean"] is not None:
             self._forms.append((form, False, forecast.units))
-            return _Term(factor, _mean, at)
+            return _Term(factor, _yes if two else _mean, at)
         if found["sd"] is not None:
             self._forms.append((form, True, forecast.units))
             return _Term(factor, _deviation, at)
@@ -501,6 +501,11 @@ def _quantile(x: Floats, share: float) -> tuple[float, Floats, float]:
     step = (right - left) / max(ranks[3] - ranks[2], 1)
     below = x <= value
     return value, (below.mean() - below) * step, step
+
+
+def _yes(x: Floats) -> tuple[float, Floats, float]:
+    """Return the share of yes, which is any number but 0."""
+    return _share(x != 0.0)
 
 
 def _share(hits: Bools) -> tuple[float, Floats, float]:

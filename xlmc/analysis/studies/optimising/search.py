@@ -29,6 +29,8 @@ MOST_ENUMERATED: Final = 2_000
 """Combinations that are all tried."""
 
 _LEAST_TRIALS: Final = 128
+_ACCEPTED: Final = 64
+"""Trials that must be accepted of those of a candidate."""
 _POPULATION, _LARGEST_POPULATION = 10, 80
 """Candidates of a generation for each decision, and at most."""
 _CANDIDATES, _MOST_CANDIDATES = 250, 2_500
@@ -59,6 +61,7 @@ def search(tried: Tried, space: Space, first: Values | None, trials: int, seed: 
         Ended: the search is to end.
     """
     least = max(_LEAST_TRIALS, 1 << max(0, math.ceil(math.log2(max(trials, 2) / 128))))
+    least = _enough(tried, space, first, least, trials)
     if space.finite and space.size <= MOST_ENUMERATED:
         tell(f"all of {space.size:,} combinations")
         tried.extend([*space.every()], least)
@@ -82,6 +85,25 @@ def search(tried: Tried, space: Space, first: Values | None, trials: int, seed: 
         best = max((tried.standing(each) for each in _leading(tried, n, 2)), key=lambda found: found.rank)
         _slide(tried, space, best, n, _FIRST_STEP / 4, 6 + 4 * len(space.axes))
     return "differential evolution, then step by step"
+
+
+def _enough(tried: Tried, space: Space, first: Values | None, least: int, trials: int) -> int:
+    """Return how many trials the first candidates get: more where few of them are accepted.
+
+    Raises:
+        Ended: the search is to end.
+    """
+    middle = space.candidate(axis.count // 2 for axis in space.axes)
+    tried_first = middle if first is None else first
+    if not space.allows(tried_first):
+        return least
+    n = least
+    while True:
+        tried.extend([tried_first], n)
+        columns = tried.columns[tried_first]
+        if n >= trials or not columns.size or int((~np.isnan(columns)).sum(axis=1).min()) >= _ACCEPTED:
+            return n
+        n = min(4 * n, 1 << math.ceil(math.log2(trials)))
 
 
 def _leading(tried: Tried, n: int, count: int = 5) -> list[Values]:

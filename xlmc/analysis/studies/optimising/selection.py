@@ -120,7 +120,8 @@ def _rival(tried: Tried, best: Values, other: Values, indifference: float, trial
     ahead, error = tried.better(best, other)
     standing = tried.standing(other)
     sureness, n = standing.sureness, standing.n
-    chance = _exceeds(ahead, error, indifference)
+    unknown = math.isnan(ahead)  # too few trials count: more of them may tell
+    chance = float(min(tried.length(best), n) < trials) if unknown else _exceeds(ahead, error, indifference)
     if not math.isinf(sureness):  # the probability that so many trials would show that it meets the requirements
         chance = min(chance, _chance(sureness - SURE * math.sqrt(min(n / trials, 1.0))))
     elif sureness < 0.0:
@@ -130,8 +131,6 @@ def _rival(tried: Tried, best: Values, other: Values, indifference: float, trial
 
 def _exceeds(ahead: float, error: float, indifference: float) -> float:
     """Return the probability that a difference is larger than the indifference."""
-    if math.isnan(ahead):
-        return 0.0
     if not error:
         return float(ahead > indifference)
     return 1.0 if math.isinf(error) else _chance((ahead - indifference) / error)
@@ -168,7 +167,8 @@ def judged(
     except Ended:
         pass
     confidence = max(0.0, 1.0 - math.fsum(each.chance for each in found.values()) - doubt)
-    return sorted(found.values(), key=lambda each: (each.meets, each.ahead), reverse=True), confidence
+    known = (each for each in found.values() if not math.isnan(each.ahead))
+    return sorted(known, key=lambda each: (each.meets, each.ahead), reverse=True), confidence
 
 
 def _fresh_rival(fresh: Tried, best: Values, other: Values, indifference: float, trials: int) -> Rival:

@@ -55,3 +55,14 @@ def test_files_hold_the_same(xlmc, book, tmp_path):
     assert written["values"] == [{"by": 2.0, "cell": 0.0}]
     assert written.pop("seal")
     assert written == json.loads(xlmc(*given, "--json").out)
+
+
+def test_a_cell_that_is_no_number_is_told_as_such(xlmc, tmp_path):
+    made = openpyxl.Workbook()
+    for row in ([3], ['=IF(A1>2,"a","b")']):
+        made.active.append(row)
+    path = tmp_path / "text.xlsx"
+    made.save(path)
+    outcome = xlmc("seek", path, "--cell", "A2", "--to", "1", "--by", "A1", "--low", "0", "--high", "5")
+    assert outcome.code == 1
+    assert "is no number for any value of" in " ".join(outcome.out.split())

@@ -79,6 +79,8 @@ def _blocks(found: Found) -> Iterator[str | Block]:
         yield f"{found.cell} is {to} wherever {found.by} is {between}, as finely as was looked."
     if not found.values.size:
         yield f"No value of {found.by} {span} makes {found.cell} equal to {to}."
+        if found.base_answer is None and all(each != each for each in found.curve[1]):  # no NaN equals itself
+            yield f"{found.cell} is no number for any value of {found.by} that was looked at."
     elif found.values.size == 1:
         yield f"{found.cell} is {to} where {found.by} is {_solved(by, found.values[0])}."
     elif found.values.size > 2 * len(found.throughout):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from inspect import unwrap
 
 import pytest
 
@@ -72,5 +73,5 @@ def keep_few_trials(patch: pytest.MonkeyPatch, rows: int = FEW) -> None:
     """Have the sheet Trials hold so many rows where a caller does not say how many, as long as the patch lasts."""
     for write in (outputs.save, save.save):
         patch.setitem(write.__kwdefaults__, "rows", rows)
-    patch.setitem(book.build_sheets.__kwdefaults__, "rows", rows)
+    patch.setitem(unwrap(book.build_sheets).__kwdefaults__, "rows", rows)
     patch.setattr(repeated_sheets, "TRIAL_ROWS", rows)

@@ -36,8 +36,8 @@ ASSUMPTIONS = [
 ]
 
 
-def write_book(path, *, filtered, kinds=()):
-    """A workbook with a forecast of each kind; `kinds` are those that its column Kind names."""
+def write_book(path, *, filtered, kinds=(), settings=()):
+    """A workbook with a forecast of each kind; `kinds` are those that its column Kind names; more rows of settings."""
     book = openpyxl.Workbook()
     model, tables = book.active, book.create_sheet("Tables")
     model.title = "Model"
@@ -49,7 +49,7 @@ def write_book(path, *, filtered, kinds=()):
         model[f"B{row}"].number_format = digits
         rows.append([name, f"=Model!B{row}", units, threshold, dict(kinds).get(name)])
     filled = {"xlmc_assumptions": ASSUMPTIONS, "xlmc_forecasts": rows}
-    filled["xlmc_settings"] = [["Setting", "Value"], ["Trials", 4_000]]
+    filled["xlmc_settings"] = [["Setting", "Value"], ["Trials", 4_000], *settings]
     if filtered:
         model["D1"] = "=B1+B5"
         filled["xlmc_filters"] = [["Name", "Cell", "At most", "Because"], ["Limit", "=Model!D1", 42, "measured"]]

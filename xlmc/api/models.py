@@ -38,7 +38,8 @@ Floats = NDArray[np.float64]
 
 _SETTINGS: Final = frozenset(
     {
-        *("trials", "seed", "sampling", "engine", "evidence", "detailed", "rare", "time_limit", "forecasts"),
+        *("trials", "seed", "sampling", "engine", "evidence", "detailed", "number_style"),
+        *("rare", "time_limit", "forecasts"),
         *("until_accepted", "precision", "precision_of", "confidence", "adaptive"),
     }
 )
@@ -279,6 +280,8 @@ class Model:
             sampling: `mc`, Monte Carlo; `lhs`, Latin hypercube; `lhs500`, the same in blocks of 500; or `sobol`,
                 scrambled Sobol. All but the first run whole replicates (independent parts of the run), and so
                 sometimes a few more trials.
+            number_style: the signs of thousands and decimals where people read numbers: `1,234.5`, `1.234,5`,
+                `1 234,5`, `1 234.5`, `1'234.5`, `1234.5` or `1234,5`.
             evidence: how evidence with a normal or lognormal error is used: `rejection`, `weights`, or `auto`, which
                 decides by the run's first trials.
             scenarios: run the scenarios of the table `xlmc_scenarios`, too, when `scenarios` of the run is asked for,

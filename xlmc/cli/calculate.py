@@ -189,6 +189,7 @@ def _check(
     """Refuse, before anything is computed, what could not be written; `read` are the files read, BOOK first."""
     from xlmc.errors import WorkbookError
     from xlmc.excel.workbook.target import Target, copy_ending, refuse_folder, refuse_same_file
+    from xlmc.montecarlo.statistics.number_text import count_text
 
     refuse_same_file(outputs)
     book = read[0]
@@ -202,7 +203,9 @@ def _check(
             raise WorkbookError(f"a copy of {book.name} must end in {copy_ending(book)}", where=path, hint=hint)
         if ending not in _TABLES and rows > 1:
             hint = f"Write the cells of all rows to a table: -o {path.with_suffix('.csv').name} --cells Results!B2:B9"
-            raise WorkbookError(f"a copy holds the values of one row, and there are {rows:,}", where=values, hint=hint)
+            raise WorkbookError(
+                f"a copy holds the values of one row, and there are {count_text(rows)}", where=values, hint=hint
+            )
         Target(path, "", overwrite, read=read).check()
     if rows > 1 and not wanted:
         raise click.UsageError("which cells are to be shown for each row? Name them: --cells Results!B2:B9")
@@ -242,11 +245,13 @@ def _print(answers: _Answers, *, as_json: bool, as_csv: bool) -> None:
 
 def _tell(answers: _Answers, book: Path, outputs: Sequence[Path]) -> None:
     """Say what was computed, to stderr where the values were printed for a program."""
+    from xlmc.montecarlo.statistics.number_text import count_text
+
     first, only = answers.found[0], len(answers.found) == 1
     if only and not answers.wanted:
         new, lost = len(first.values), len(first.unknown)
         parts = [
-            f"{count:,} {_cells(count)} {what}"
+            f"{count_text(count)} {_cells(count)} {what}"
             for count, what in ((new, "computed"), (lost, "without a value"))
             if count
         ]
@@ -263,7 +268,7 @@ def _tell(answers: _Answers, book: Path, outputs: Sequence[Path]) -> None:
                     listed.append(cell)
     for (said, why), listed in by_reason.items():
         shown = ", ".join(map(str, listed[:_MOST_TOLD]))
-        more = f" and {len(listed) - _MOST_TOLD:,} more" if len(listed) > _MOST_TOLD else ""
+        more = f" and {count_text(len(listed) - _MOST_TOLD)} more" if len(listed) > _MOST_TOLD else ""
         if len(listed) > 1:
             said = said.replace("has", "have").replace("keeps", "keep")
         who = "it" if len(listed) == 1 else "they"

@@ -41,7 +41,7 @@ def check(
 
     Checks that fail at the base case, and cells that are errors there, come first.
     """
-    from xlmc.cli.printing import notices
+    from xlmc.cli.printing import notices, use_number_style
     from xlmc.engine.engines import ENGINES
     from xlmc.errors import XlmcError
     from xlmc.excel.workbook.inject import refuse_unwritable
@@ -53,6 +53,7 @@ def check(
 
     workbook = calculate_labels(read_workbook(book, functions=functions))
     definitions = read_definitions(workbook, ENGINES)
+    use_number_style(definitions.settings.number_style)
     problems: list[XlmcError] = list(definitions.problems)
     model: CompiledModel | None = None
     if not problems:
@@ -111,6 +112,8 @@ def _show_base_case(model: CompiledModel) -> list[str]:
 
 def _error_lines(model: CompiledModel, errors: BaseErrors) -> Iterator[str]:
     """Return the cells that errors come from with their formulas, then the cells that have theirs from these."""
+    from xlmc.montecarlo.statistics.number_text import count_text
+
     handled = "" if errors.answers else " (handled: no forecast, filter or check is an error)"
     for cell, code in list(errors.roots.items())[:_MOST_CELLS]:
         from xlmc.analysis.results.record.needed_cells import content_text
@@ -118,10 +121,10 @@ def _error_lines(model: CompiledModel, errors: BaseErrors) -> Iterator[str]:
 
         yield f"{cell} {code.text}{handled}: {content_text(model.workbook, host_of(cell))}"
     if len(errors.roots) > _MOST_CELLS:
-        yield f"… and {len(errors.roots) - _MOST_CELLS:,} more cells with an error of their own"
+        yield f"… and {count_text(len(errors.roots) - _MOST_CELLS)} more cells with an error of their own"
     if errors.others:
         named = ", ".join(f"{cell} {code.text}" for cell, code in list(errors.others.items())[:_MOST_CELLS])
-        more = f" and {len(errors.others) - _MOST_CELLS:,} more" if len(errors.others) > _MOST_CELLS else ""
+        more = f" and {count_text(len(errors.others) - _MOST_CELLS)} more" if len(errors.others) > _MOST_CELLS else ""
         yield f"Cells that are errors because of these: {named}{more}."
 
 
@@ -132,7 +135,7 @@ def _standing(assumption: Assumption) -> str:
 def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> None:
     from xlmc.analysis.results.statements.in_words import distribution_text, evidence_text, given_text, limits_text
     from xlmc.cli.printing import table
-    from xlmc.montecarlo.distributions.parameters import show
+    from xlmc.montecarlo.statistics.number_text import exact_text
     from xlmc.outputs.summary import percent
 
     table(
@@ -187,7 +190,7 @@ def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> 
         table("Checks", ("Name", "Cell", "Because"), [(c.name, str(c.cell), c.because) for c in definitions.checks])
     correlations = (model.definitions if model else definitions).correlations
     if correlations:
-        asked = [show(c.value) if isinstance(c.value, float) else str(c.value) for c in correlations]
+        asked = [exact_text(c.value) if isinstance(c.value, float) else str(c.value) for c in correlations]
         pairs = [(c.first, c.second, a, _drawn_with(model, c)) for c, a in zip(correlations, asked, strict=True)]
         table("Rank correlations", ("First", "Second", "Asked for", "Drawn with"), pairs, right=(2, 3))
     scenario_table(definitions)
@@ -195,9 +198,9 @@ def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> 
 
 def _stated(forecast: Forecast) -> tuple[str, str, str]:
     """How a forecast is to be stated: its resolution, its kind and its role."""
-    from xlmc.montecarlo.distributions.parameters import show
+    from xlmc.montecarlo.statistics.number_text import exact_text
 
-    resolution = "" if forecast.report_to is None else show(forecast.report_to)
+    resolution = "" if forecast.report_to is None else exact_text(forecast.report_to)
     return resolution, "" if forecast.kind is None else forecast.kind.value, forecast.role.value
 
 
@@ -213,9 +216,10 @@ def scenario_table(definitions: Definitions) -> None:
 
 def _drawn_with(model: CompiledModel | None, correlation: Correlation) -> str:
     from xlmc.montecarlo.model.correlating import drawn_correlation
+    from xlmc.montecarlo.statistics.number_text import number_text
 
     found = None if model is None else drawn_correlation(model.groups, correlation.first, correlation.second)
-    return "-" if found is None else f"{found:.3g}"
+    return "-" if found is None else number_text(found, 3)
 
 
 def _show_need(model: CompiledModel, workbook: Workbook) -> None:
@@ -259,13 +263,14 @@ def check_table(run: RunResult) -> None:
     """Print how many accepted trials fail each check; only how many checks there are where no trial fails one."""
     from xlmc.cli.printing import table
     from xlmc.montecarlo.diagnostics.checking import checks_sentence
+    from xlmc.montecarlo.statistics.number_text import count_text
 
     if not run.checks:
         return
     if all(check.holds and not check.failed for check in run.checks):
         say(paragraph(f"{checks_sentence(run.checks)}.") + "\n")
         return
-    rows = [(check.name, check.base.found or "", f"{check.failed:,}", _share(check)) for check in run.checks]
+    rows = [(check.name, check.base.found or "", count_text(check.failed), _share(check)) for check in run.checks]
     title = f"Checks, in {run.checks[0].looked_at}"
     table(title, ("Check", "Base case", "Failing", "Share"), rows, right=(2, 3))
 

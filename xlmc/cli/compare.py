@@ -76,13 +76,14 @@ def compare(
     """Run the workbooks FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
     from xlmc.analysis.studies import comparison
     from xlmc.analysis.studies.comparison.verdicts import book_names
-    from xlmc.cli.printing import notices, warnings
+    from xlmc.cli.printing import notices, use_number_style, warnings
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.diagnostics.directions import direction_notices
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.study_report import Files
 
     books = load(first, functions=functions), load(second, functions=functions)
+    use_number_style(books[0].definitions.settings.number_style)
     files = Files((*output, *also), [first, second], overwrite=overwrite, functions=functions)
     files.check()
     with step_line(quiet) as tell:
@@ -149,12 +150,14 @@ def _report(found: Comparison) -> StudyReport:
 
 def _sentences(found: Comparison) -> Iterator[str]:
     from xlmc.analysis.studies.comparison.verdicts import book_names, inputs_text
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.summary import share_text
 
     books, accepted, trials = book_names(found), found.acceptance, found.first.trials
     yield (
-        f"Of {trials:,} trials both accept {accepted.both:,}; {books[0]} alone {accepted.first_only:,}, "
-        f"{books[1]} alone {accepted.second_only:,}; seed {found.first.settings.seed}."
+        f"Of {count_text(trials)} trials both accept {count_text(accepted.both)}; {books[0]} alone "
+        f"{count_text(accepted.first_only)}, "
+        f"{books[1]} alone {count_text(accepted.second_only)}; seed {found.first.settings.seed}."
     )
     if not (found.first.model.filters or found.second.model.filters):
         yield "Neither book has filters: every trial is accepted."
@@ -179,6 +182,7 @@ def _title(each: ForecastComparison) -> str:
 
 def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
     from xlmc.analysis.studies.comparison.verdicts import amount, is_chance, tolerance_text
+    from xlmc.montecarlo.statistics.number_text import number_text
     from xlmc.outputs.summary import estimate_text, percent
 
     found, form = each.difference, each.difference.form
@@ -188,7 +192,7 @@ def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
         both, apart = (change.first, change.second), change.difference
         if is_chance(number):
             values = [amount(number, one, form).removesuffix(" points") for one in (*both, apart)]
-            rows.append((f"{label}, %", *values, f"{100 * each.limits[number]:.3g}"))
+            rows.append((f"{label}, %", *values, number_text(100 * each.limits[number], 3)))
         else:
             written = form.spread if number == "SD" else form.estimate
             difference = "" if isnan(apart.value) else form.spread(apart)

@@ -36,13 +36,14 @@ def convert(
 
     The copy gives the same accepted trials as BOOK, to the last bit.
     """
-    from xlmc.cli.printing import notices, table
+    from xlmc.cli.printing import notices, table, use_number_style
     from xlmc.excel.workbook.target import copy_ending
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.conversion.convert import convert as write
     from xlmc.outputs.sheets.save import check_ending
 
     model = load(book, functions=functions)
+    use_number_style(model.definitions.settings.number_style)
     path = output or model.path.with_name(f"{model.path.stem}-converted{copy_ending(model.path)}")
     check_ending(path, model.path)
     found = write(model, path, overwrite=overwrite)

@@ -55,11 +55,13 @@ def decide(
 ) -> None:
     """Tell the answers of BOOK for every combination of its decisions, over the same random numbers."""
     from xlmc.analysis.studies import decisions as study
+    from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
+    use_number_style(model.definitions.settings.number_style)
     files = Files((*output, *also), [book], overwrite=overwrite, functions=functions, of_run=True)
     files.check()
     with step_line(quiet) as tell:
@@ -85,13 +87,15 @@ def _values_text(found: Decided, values: tuple[float, ...]) -> str:
 
 
 def _report(found: Decided) -> StudyReport:
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
     run, count = found.run, len(found.combinations) + len(found.impossible)
     below = (
-        f"{run.model.workbook.name}: {count:,} combination{'s' * (count != 1)} of "
-        f"{', '.join(each.name for each in found.decisions)}, {run.trials:,} trials each, seed {run.settings.seed}"
+        f"{run.model.workbook.name}: {count_text(count)} combination{'s' * (count != 1)} of "
+        f"{', '.join(each.name for each in found.decisions)}, {count_text(run.trials)} trials each, "
+        f"seed {run.settings.seed}"
     )
     blocks = blocks_of([*_sentences(found), *_blocks(found), _MEANING])
     title = "What each decision gives"

@@ -140,7 +140,7 @@ def fit(
     written = write_files(files.writers(report))
     into = None if edited is None else written_or_reported(edited.path, partial(fit_into.write, edited))
     if as_json:
-        say_json(report.as_json())
+        say_json(report.json())
     else:
         said = blocks_of(_cautions(found))  # as warnings, below
         show([each for each in report.blocks[:-1] if each not in said])
@@ -314,6 +314,7 @@ def _cautions(found: Fitting) -> list[str]:
 
 
 def _ranking(found: Fitting, source: str, blank: int) -> Table:
+    from xlmc.montecarlo.statistics.number_text import styled_text
     from xlmc.outputs.document.parts import Table
 
     left_out = f"; {blank} blank cells left out" if blank else ""
@@ -323,9 +324,9 @@ def _ranking(found: Fitting, source: str, blank: int) -> Table:
         (
             fitted.name,
             _parameters(fitted),
-            f"{fitted.aic - best:.1f}",
-            f"{fitted.aic:.1f}",
-            f"{fitted.bic:.1f}",
+            styled_text(fitted.aic - best, ".1f"),
+            styled_text(fitted.aic, ".1f"),
+            styled_text(fitted.bic, ".1f"),
             _statistic(fitted.ad),
             _statistic(fitted.ks),
         )
@@ -378,12 +379,13 @@ _MEANING = (
 def _parameters(fitted: Fitted) -> str:
     from xlmc.analysis.studies.fitting import parameter_texts
     from xlmc.montecarlo.statistics import format_estimate
+    from xlmc.montecarlo.statistics.number_text import number_text
 
     parts, texts = [], parameter_texts(fitted)
     for heading, value in fitted.parameters.items():
         error = fitted.errors[heading]
         if heading in fitted.fixed:
-            parts.append(f"{heading} {value:g} (not estimated)")
+            parts.append(f"{heading} {number_text(value)} (not estimated)")
         elif error is None or not math.isfinite(error):
             parts.append(f"{heading} {texts[heading]}")
         else:
@@ -392,7 +394,9 @@ def _parameters(fitted: Fitted) -> str:
 
 
 def _statistic(value: float | None) -> str:
-    return "–" if value is None else "∞" if math.isinf(value) else f"{value:.3f}"
+    from xlmc.montecarlo.statistics.number_text import styled_text
+
+    return "–" if value is None else "∞" if math.isinf(value) else styled_text(value, ".3f")
 
 
 def _sources(found: Fitting) -> dict[str, list[str]]:

@@ -64,12 +64,14 @@ def methods(
 ) -> None:
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
     from xlmc.analysis.studies.methods import quick_settings, recommendation, study
+    from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.methods import in_short, methods_report
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
+    use_number_style(model.definitions.settings.number_style)
     files = Files((*output, *also), [book], overwrite=overwrite, functions=functions, drawn=True)
     files.check()
     asked: dict[str, Any] = {"reference_trials": reference_trials, "trials": trials, "replicates": replicates}
@@ -81,7 +83,7 @@ def methods(
     report = methods_report(found, figures=files.show_figures)
     written = write_files(files.writers(report))
     if as_json:
-        say_json(report.as_json())
+        say_json(report.json())
     else:
         show(in_short(found))
         say()

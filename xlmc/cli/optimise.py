@@ -79,11 +79,13 @@ def optimise(
     Ctrl-C ends the search with the best that was found by then.
     """
     from xlmc.analysis.studies.optimising import optimise as study
+    from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
+    use_number_style(model.definitions.settings.number_style)
     files = Files((*output, *also), [book], overwrite=overwrite, of_run=True, functions=functions)
     files.check()
     with step_line(quiet) as tell:
@@ -125,14 +127,16 @@ def _doubts(found: Optimised) -> list[str]:
 
 
 def _report(found: Optimised, again: str) -> StudyReport:
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.document.parts import Code, Paragraph, blocks_of
     from xlmc.outputs.study_report import StudyReport
 
     run = found.run
     named = ", ".join(each.name for each in found.decisions)
     below = (
-        f"{run.model.workbook.name}: {found.tried:,} candidate{'s' * (found.tried != 1)} for {named}, "
-        f"{found.trials:,} trials in all; {run.trials:,} fresh ones of the best, seed {run.settings.seed}"
+        f"{run.model.workbook.name}: {count_text(found.tried)} candidate{'s' * (found.tried != 1)} for {named}, "
+        f"{count_text(found.trials)} trials in all; {count_text(run.trials)} fresh ones of the best, "
+        f"seed {run.settings.seed}"
     )
     blocks = [*_sentences(found), *_blocks(found), _meaning(found), Paragraph("To repeat it:", "small"), Code(again)]
     title = f"The {found.goal.words}"
@@ -151,20 +155,26 @@ def _percent(share: float) -> str:
     >>> [_percent(share) for share in (0.951, 0.99999, 0.02)]
     ['95.1 %', 'more than 99.9 %', '2 %']
     """
+    from xlmc.montecarlo.statistics.number_text import number_text
+
     if share > 0.999:
         return "more than 99.9 %"
-    return f"{int(share * 1000.0) / 10.0:g} %"
+    return f"{number_text(int(share * 1000.0) / 10.0)} %"
 
 
 def _small(found: Optimised) -> str:
+    from xlmc.montecarlo.statistics.number_text import number_text
+
     measure = found.goal.measure
     if measure.form.factor != 1.0:
-        return f"{found.indifference * measure.form.factor:g} percentage points"
+        return f"{number_text(found.indifference * measure.form.factor)} percentage points"
     text = measure.form.width(found.indifference)
     return f"{text} {measure.units}" if measure.units else text
 
 
 def _sentences(found: Optimised) -> Iterator[str]:
+    from xlmc.montecarlo.statistics.number_text import count_text
+
     measure = found.goal.measure
     extreme = "largest" if found.goal.maximise else "smallest"
     best = _with_values(found, found.best)
@@ -175,7 +185,7 @@ def _sentences(found: Optimised) -> Iterator[str]:
     for each in found.held:
         yield _held_text(each)
     others = "no other that was tried" if not found.held else "no other that was tried and meets this as surely"
-    among = f"Of {found.tried:,} candidates" if found.tried > 1 else "Of one candidate"
+    among = f"Of {count_text(found.tried)} candidates" if found.tried > 1 else "Of one candidate"
     yield (
         f"{among}, {others} is better by more than {_small(found)}, a difference that does not matter here: "
         f"{_percent(found.confidence)} confidence."

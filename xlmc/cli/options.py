@@ -47,14 +47,15 @@ class WholeNumber(click.ParamType):  # type: ignore[type-arg]  # no generic befo
             BadParameter: it is none, or lies outside.
         """
         from xlmc.montecarlo.definitions.amounts import typed_whole_number
+        from xlmc.montecarlo.statistics.number_text import count_text
 
         found = value if isinstance(value, int) else typed_whole_number(value)
         if found is None:
             self.fail(f"{value!r} is not a whole number. Type it like 200000, 200,000, 2e5 or 200k.", param, ctx)
         if found < self._least:
-            self.fail(f"{found:,} is too small. Type {self._least:,} or more.", param, ctx)
+            self.fail(f"{count_text(found)} is too small. Type {count_text(self._least)} or more.", param, ctx)
         if self._most is not None and found > self._most:
-            self.fail(f"{found:,} is too large. Type {self._most:,} or less.", param, ctx)
+            self.fail(f"{count_text(found)} is too large. Type {count_text(self._most)} or less.", param, ctx)
         return found
 
 

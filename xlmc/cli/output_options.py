@@ -389,6 +389,7 @@ class Outputs(NamedTuple):
         Where a name was taken since the run began, or a program holds the file, a free name beside it is used.
         """
         from xlmc.api import Simulation
+        from xlmc.montecarlo.statistics.number_text import count_text
 
         written, lines = True, []
         for path, label, write in self._files(Simulation(run)):
@@ -398,7 +399,7 @@ class Outputs(NamedTuple):
             else:
                 lines.append(f"{label} {found}")
         if run.kept_inputs < run.accepted:
-            kept = f"the draws of {run.kept_inputs:,} of {run.accepted:,} accepted trials were kept"
+            kept = f"the draws of {count_text(run.kept_inputs)} of {count_text(run.accepted)} accepted trials were kept"
             for path in self.trials:
                 say(f"note: {path}: {kept}; the others are blank", err=True)
         return written, lines

@@ -107,6 +107,7 @@ def _areas(book: Workbook, places: Sequence[str]) -> list[Area] | None:
 def _show(found: Prepared) -> None:
     from xlmc.cli.printing import table
     from xlmc.montecarlo.definitions.tables.table_rows import as_text
+    from xlmc.montecarlo.statistics.number_text import count_text
 
     for title, rows in (("Assumptions, frozen", found.found.assumptions), ("Forecasts", found.found.forecasts)):
         if not rows:
@@ -114,10 +115,10 @@ def _show(found: Prepared) -> None:
         told = [(each.name, str(each.cell), as_text(each.value), each.units) for each in rows[:_MOST_TOLD]]  # type: ignore[arg-type]
         table(title, ("Name", "Cell", "Value", "Units"), told, right=(2,))
         if len(rows) > _MOST_TOLD:
-            say(f"… and {len(rows) - _MOST_TOLD:,} more.")
+            say(f"… and {count_text(len(rows) - _MOST_TOLD)} more.")
     if found.found.further:
         more = found.found.further
-        many = f"{more:,} more formulas are" if more > 1 else "1 more formula is"
+        many = f"{count_text(more)} more formulas are" if more > 1 else "1 more formula is"
         say(
             paragraph(f"note: {many} used by no other: name answers with --forecast Sheet!Cell."),
             err=True,

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
+import click
+
 from xlmc.cli.terminal import encodable, on_terminal, paragraph, put, say, width
 from xlmc.errors import shortened
 from xlmc.excel.workbook.printable import printable
@@ -19,7 +21,7 @@ from xlmc.excel.workbook.printable import printable
 if TYPE_CHECKING:
     from xlmc.errors import Notice
 
-__all__ = ["heading", "notices", "table", "table_lines", "warnings"]
+__all__ = ["heading", "notices", "table", "table_lines", "use_number_style", "warnings"]
 
 _PIPE_WIDTH: Final = 160
 
@@ -50,6 +52,13 @@ def heading(title: str) -> None:
 
 def _title(text: str) -> tuple[str, ...]:
     return (_bold(paragraph(_one_line(text))), "") if text else ()
+
+
+def use_number_style(style: str) -> None:
+    """Write all numbers in a style until the command ends; see `in_style`."""
+    from xlmc.montecarlo.definitions.number_styles import in_style
+
+    click.get_current_context().with_resource(in_style(style))
 
 
 def notices(found: Sequence[Notice]) -> None:

@@ -18,16 +18,20 @@ __all__ = ["errors_line", "progress_bar", "step_line", "trials_line"]
 
 def trials_line(standing: Progress) -> str:
     """`65,536 trials, 1,150 accepted (1.75 %)`."""
+    from xlmc.montecarlo.statistics.number_text import count_text, number_text
+
     if standing.searching:
-        return f"{standing.trials:,} trials, looking for accepted ones"
+        return f"{count_text(standing.trials)} trials, looking for accepted ones"
     share = 100.0 * standing.accepted / standing.trials
-    return f"{standing.trials:,} trials, {standing.accepted:,} accepted ({share:.3g} %)"
+    return f"{count_text(standing.trials)} trials, {count_text(standing.accepted)} accepted ({number_text(share, 3)} %)"
 
 
 def errors_line(standing: Progress) -> str:
     """Return the standard error of every forecast's mean so far: `± Chevrolet delta-V 0.013, Nissan delta-V 0.02`."""
+    from xlmc.montecarlo.statistics.number_text import number_text
+
     known = [(name, mean.error) for name, mean in standing.means.items() if mean.error is not None]
-    return f"± {', '.join(f'{name} {error:.2g}' for name, error in known)}" if known else ""
+    return f"± {', '.join(f'{name} {number_text(error, 2)}' for name, error in known)}" if known else ""
 
 
 @contextmanager

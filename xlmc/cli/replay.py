@@ -48,11 +48,14 @@ def replay(
     functions: OwnFunctions | None,
 ) -> None:
     """Repeat the run recorded in RESULTS, a result workbook or a saved run, from the definitions in the same file."""
+    from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import progress_bar
     from xlmc.outputs import replay as replaying
 
     with progress_bar(quiet) as progress:
         found = replaying.replay(recorded, books=books, jobs=jobs, progress=progress, functions=functions)
+    if found.repeated is not None:
+        use_number_style(found.repeated.settings.number_style)
     if as_json:
         say_json(_as_json(found))
     else:
@@ -67,7 +70,7 @@ def _lines(found: Replayed, path: Path) -> Iterator[str]:
 
     record = found.record
     yield (
-        f"{path.name} records a run of {record['file.name']}: {record['counts.trials']:,.0f} trials, "
+        f"{path.name} records a run of {record['file.name']}: {_figure(record['counts.trials'])} trials, "
         f"seed {record['settings.seed']}."
     )
     if (changed := changed_from_of(record)) is not None:
@@ -106,7 +109,8 @@ def _other_version(found: Replayed) -> Iterator[str]:
 
 
 def _verdict(found: Replayed) -> str:
-    accepted = f"{found.record['counts.accepted']:,.0f}"
+
+    accepted = _figure(found.record["counts.accepted"])
     if found.to_the_last_bit:
         return f"identical: the same {accepted} accepted trials to the last bit"
     if found.identical:
@@ -136,10 +140,15 @@ def _numbers(numbers: Sequence[NumberChange]) -> Iterator[str]:
 
 def _sheet_lines(found: Replayed) -> Iterator[str]:
     """Yield what the result sheets show that the repeated run does not give."""
+    from xlmc.montecarlo.statistics.number_text import count_text
+
     differences = found.shown.differences
     if differences:
         count = len(differences)
-        yield f"{count:,} cell{'s' * (count != 1)} that {'do' if count != 1 else 'does'} not show what the run gives:"
+        yield (
+            f"{count_text(count)} cell{'s' * (count != 1)} that {'do' if count != 1 else 'does'} not "
+            "show what the run gives:"
+        )
     for difference in differences[:_MOST]:
         yield f"  {difference.where} says {_value(difference.says)}, the run gives {_value(difference.gives)}"
     yield from _rest(differences)
@@ -168,15 +177,19 @@ def _difference_json(difference: CellDifference) -> dict[str, object]:
     return {"where": str(difference.where), "says": says, "gives": gives}
 
 
-def _figure(number: float | None) -> str:
-    if number is None:
+def _figure(number: object) -> str:
+    from xlmc.montecarlo.statistics.number_text import fixed_text, styled_text
+
+    if not isinstance(number, int | float):
         return "none"
-    return f"{number:,.0f}" if float(number).is_integer() else repr(float(number))
+    return fixed_text(number, 0) if float(number).is_integer() else styled_text(number, "")
 
 
 def _rest(listed: Sequence[object]) -> Iterator[str]:
+    from xlmc.montecarlo.statistics.number_text import count_text
+
     if len(listed) > _MOST:
-        yield f"  … and {len(listed) - _MOST:,} more"
+        yield f"  … and {count_text(len(listed) - _MOST)} more"
 
 
 def _unexplained_lines(found: Replayed) -> Iterator[str]:

@@ -47,7 +47,7 @@ def report(
     the page that -o names.
     """
     from xlmc.analysis.results.saved import open_run
-    from xlmc.cli.printing import notices, warnings
+    from xlmc.cli.printing import notices, use_number_style, warnings
     from xlmc.cli.simulate import show_run
     from xlmc.excel.workbook.package import WORKBOOKS
     from xlmc.excel.workbook.seal import read_seal
@@ -77,6 +77,7 @@ def report(
             say(f"warning: {run}: this saved run was changed since xlmc wrote it (its seal is broken).", err=True)
     if detailed is not None:
         found = replace(found, settings=replace(found.settings, detailed=detailed))
+    use_number_style(found.settings.number_style)
     if not quiet:
         notices(found.model.notices)
     default = None if asked.files else results_beside(run, copy_ending(found.model.path))

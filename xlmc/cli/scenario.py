@@ -43,6 +43,7 @@ def scenario(
     from xlmc.analysis.studies.scenario_answers import refuse_no_scenarios, scenario_faults
     from xlmc.analysis.studies.scenario_workbook import edited_workbook, write_edited
     from xlmc.cli.check import scenario_table
+    from xlmc.cli.printing import use_number_style
     from xlmc.excel.workbook.writer import refuse_if_open
     from xlmc.montecarlo.model.loading import load
 
@@ -53,6 +54,7 @@ def scenario(
     if in_place:
         refuse_if_open(book)
     model = load(book, functions=functions)
+    use_number_style(model.definitions.settings.number_style)
     if name is None:
         refuse_no_scenarios(model)
         scenario_table(model.definitions)
@@ -74,6 +76,7 @@ def _show(edited: EditedWorkbook, model: CompiledModel) -> None:
     """Print the cells with what they held and hold, and what could not be computed."""
     from xlmc.cli.printing import table
     from xlmc.montecarlo.definitions.tables.table_rows import as_text
+    from xlmc.montecarlo.statistics.number_text import count_text
 
     rows = [
         (str(cell), as_text(old) or "nothing", as_text(new) or "nothing") for cell, (old, new) in edited.cells.items()
@@ -83,12 +86,16 @@ def _show(edited: EditedWorkbook, model: CompiledModel) -> None:
         table(title, ("Cell", "Holds", "Is to hold"), rows)
     else:
         say(f"{title}: the workbook holds all of them already.")
-    many = "1 formula gets a new value" if edited.computed == 1 else f"{edited.computed:,} formulas get new values"
+    many = (
+        "1 formula gets a new value"
+        if edited.computed == 1
+        else f"{count_text(edited.computed)} formulas get new values"
+    )
     if edited.computed:
         say(paragraph(f"{many}, computed by xlmc."))
     if edited.left:
         skipped = [f"{cell} ({why})" for cell, why in list(edited.left.items())[:_MOST_TOLD]]
-        more = f" and {len(edited.left) - _MOST_TOLD:,} more" if len(edited.left) > _MOST_TOLD else ""
+        more = f" and {count_text(len(edited.left) - _MOST_TOLD)} more" if len(edited.left) > _MOST_TOLD else ""
         message = f"could not be computed: {'; '.join(skipped)}{more}. Excel calculates the workbook when it opens it"
         say(f"note: {message}", err=True)
     if edited.has_results:

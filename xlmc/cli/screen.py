@@ -88,11 +88,13 @@ def screen(
     changing its answers.
     """
     from xlmc.analysis.studies import screening
+    from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
+    use_number_style(model.definitions.settings.number_style)
     files = Files((*output, *also), [book], overwrite=overwrite, functions=functions, of_run=True)
     files.check()
     with step_line(quiet) as tell:
@@ -121,11 +123,12 @@ def screen(
 
 
 def _report(found: Screening) -> StudyReport:
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
     run = found.run
-    below = f"{run.model.workbook.name}: {found.runs} runs of {run.trials:,} trials, seed {run.settings.seed}"
+    below = f"{run.model.workbook.name}: {found.runs} runs of {count_text(run.trials)} trials, seed {run.settings.seed}"
     blocks = blocks_of([*_verdicts(found), *_tables(found), *_meaning(found)])
     title = "What the book could do without"
     return StudyReport(title, below, blocks, "Screening", partial(_as_json, found), run)
@@ -186,7 +189,9 @@ def _has_evidence(found: Screening) -> bool:
 
 def _size(tolerances: float) -> str:
     """Count a move in tolerances; infinite where the forecast does not vary and so has no tolerance."""
-    return f"{tolerances:.2g}" if isfinite(tolerances) else "infinite"
+    from xlmc.montecarlo.statistics.number_text import number_text
+
+    return number_text(tolerances, 2) if isfinite(tolerances) else "infinite"
 
 
 def _of_forecast(found: Screening, name: str) -> Table:
@@ -260,11 +265,13 @@ def _acceptance_text(found: Screening, cost: Cost) -> str:
 
 def _verdicts(found: Screening) -> Iterable[str]:
     from xlmc.analysis.studies.comparison.verdicts import undecided_text
+    from xlmc.montecarlo.statistics.number_text import count_text, styled_text
 
     if found.joint:
         yield (
             f"Not needed: {'; '.join(found.joint.names)}. With all of them held at their base values in one run, no "
-            f"number moves by more than {found.joint.size:.2f} of its tolerance{_acceptance_text(found, found.joint)}."
+            f"number moves by more than {styled_text(found.joint.size, '.2f')} of its "
+            f"tolerance{_acceptance_text(found, found.joint)}."
         )
     else:
         yield "Every assumption is needed, as far as these trials tell."
@@ -287,11 +294,12 @@ def _verdicts(found: Screening) -> Iterable[str]:
         yield (
             f"{'Filters and evidence' if _has_evidence(found) else 'Filters'} that then make no difference here: "
             f"{'; '.join(found.reduced.names)}. Without them no number moves by "
-            f"more than {found.reduced.size:.2f} of its tolerance. A filter that rejects the impossible may stay."
+            f"more than {styled_text(found.reduced.size, '.2f')} of its tolerance. A filter that "
+            "rejects the impossible may stay."
         )
     if found.undecided:
         names = "; ".join(undecided_text(cost, found.run.trials) for cost in found.undecided)
-        yield f"Undecided at {found.run.trials:,} trials, and therefore kept: {names}."
+        yield f"Undecided at {count_text(found.run.trials)} trials, and therefore kept: {names}."
 
 
 def _ends_text(free: Sequence[str]) -> str:
@@ -309,20 +317,25 @@ def _ends_text(free: Sequence[str]) -> str:
 
 
 def _meaning(found: Screening) -> Iterable[str]:
+    from xlmc.montecarlo.statistics.number_text import count_text, number_text
+
     if found.constant:
         yield f"Formula cells that then do not vary: {', '.join(map(str, found.constant))}."
     if found.dropped:
         yield f"Formula cells that then are not needed: {', '.join(map(str, found.dropped))}."
     yield f"Of {found.cells} formula cells that the book needs, {found.varying} then vary."
     tolerances = "; ".join(f"{name} {_tolerance(found, name)}" for name in found.tolerances)
-    accepted = f"; acceptance {100 * found.acceptance_tolerance:g} % of itself" if found.run.model.filters else ""
+    accepted = (
+        f"; acceptance {number_text(100 * found.acceptance_tolerance)} % of itself" if found.run.model.filters else ""
+    )
     yield (
         "Cost: the largest change of any number, divided by its tolerance; above 1 the answer changes. The numbers of "
         "a forecast are its mean, SD, both ends of its central range, and the probability of being above its "
         f"threshold where it has one; of yes/no answers and texts their shares. Tolerances: {tolerances}{accepted}."
     )
     yield (
-        f"{found.runs} runs of {found.run.trials:,} trials, seed {found.run.settings.seed}, over the same draws; ± is "
+        f"{found.runs} runs of {count_text(found.run.trials)} trials, seed {found.run.settings.seed}, "
+        "over the same draws; ± is "
         "the standard error of a change (Monte Carlo error). A verdict is given only where a change is at least three "
         "errors away from the tolerance."
     )

@@ -66,12 +66,13 @@ def simulate(
 ) -> None:
     """Run BOOK, print the summary, and write result sheets and charts into a copy of it, or what -o names."""
     from xlmc.analysis.studies.scenario_answers import refuse_no_scenarios
-    from xlmc.cli.printing import notices, warnings
+    from xlmc.cli.printing import notices, use_number_style, warnings
     from xlmc.cli.progress_bar import progress_bar
     from xlmc.montecarlo.definitions.feeds import read_feeds
     from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
     from xlmc.montecarlo.model.loading import load
     from xlmc.montecarlo.simulation.simulate import run_model
+    from xlmc.montecarlo.statistics.number_text import count_text
 
     if os.path.isdir(book):
         load(book, functions=functions)  # says so
@@ -83,6 +84,7 @@ def simulate(
         raise click.UsageError("--in-place and -o with a workbook cannot both be given.")
     outputs = wanted.check(book) if os.path.exists(book) else wanted  # `load` says that there is no book
     model = load(book, feeds, functions)
+    use_number_style(asked["number_style"] or model.definitions.settings.number_style)
     outputs.check_against(model)
     scenarios = bool(asked["scenarios"])
     if scenarios:
@@ -106,7 +108,7 @@ def simulate(
     warnings([*run.warnings, *of_scenarios], run.refused)
     if run.stopped.interrupted:
         filtered = "; those that were accepted were written" if written else ""
-        say(f"xlmc: interrupted after {run.trials:,} trials{filtered}.", err=True)
+        say(f"xlmc: interrupted after {count_text(run.trials)} trials{filtered}.", err=True)
     if not written:
         raise click.exceptions.Exit(NOT_WRITTEN)
     if run.stopped.interrupted or (scenarios and not answers):
@@ -161,6 +163,7 @@ def show_run(run: RunResult) -> None:
     from xlmc.cli.check import check_table, show_first
     from xlmc.cli.printing import table
     from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.document import further_sections
     from xlmc.outputs.document.parts import Heading
     from xlmc.outputs.summary import error_sentence, rejection_rows, summarise, summary_text
@@ -173,10 +176,14 @@ def show_run(run: RunResult) -> None:
     ended = "" if run.stopped == ALL_TRIALS else f"Ended when {run.stopped.sentence}.\n"
     say(ended + paragraph(sampling_sentence(run)) + "\n")
     if run.model.filters:
-        of = "Trials rejected" if run.rare is None else f"Trials rejected of {run.trials:,} drawn before the search"
+        of = (
+            "Trials rejected"
+            if run.rare is None
+            else f"Trials rejected of {count_text(run.trials)} drawn before the search"
+        )
         table(of, ("Filter", "Keeps", "Rejected", "Only by it"), rejection_rows(run), right=(2, 3))
     if run.model.forecast_filters:
-        of = f"Discarded of {run.accepted:,} accepted trials, for one forecast only"
+        of = f"Discarded of {count_text(run.accepted)} accepted trials, for one forecast only"
         table(of, ("Filter", "Only for", "Keeps", "Discarded", "Share"), _discards(run), right=(3, 4))
     _show_evidence(run)
     check_table(run)
@@ -234,27 +241,40 @@ def _show_scenarios(run: RunResult) -> None:
 
 def _acceptance_sentence(run: RunResult) -> str:
     from xlmc.analysis.results.record.errors_met import rest_sentences
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.summary import share_text
 
     if run.rare is not None:
         from xlmc.montecarlo.rare.account import probability_text
 
-        return f"{run.accepted:,} accepted trials; a trial is accepted with probability {probability_text(run.rare)}"
+        return (
+            f"{count_text(run.accepted)} accepted trials; a trial is accepted with probability "
+            f"{probability_text(run.rare)}"
+        )
     if any(errors.total() for errors in run.faults.values()) or run.model.forecast_filters:
         filtered = (
-            [f"the filters kept {run.accepted:,}, {share_text(run.acceptance)}"] if run.accepted < run.trials else []
+            [f"the filters kept {count_text(run.accepted)}, {share_text(run.acceptance)}"]
+            if run.accepted < run.trials
+            else []
         )
         return "; ".join((*rest_sentences(run), *filtered))
     if not run.model.filters and run.accepted == run.trials:
-        return f"The workbook has no filters: all {run.trials:,} trials are accepted"
-    return f"Accepted {run.accepted:,} of {run.trials:,} trials, {share_text(run.acceptance)}"
+        return f"The workbook has no filters: all {count_text(run.trials)} trials are accepted"
+    return f"Accepted {count_text(run.accepted)} of {count_text(run.trials)} trials, {share_text(run.acceptance)}"
 
 
 def _discards(run: RunResult) -> list[tuple[str, ...]]:
     from xlmc.analysis.results.statements.in_words import discards_of, limits_text
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.summary import share_text
 
     return [
-        (found.filter.name, found.forecast, limits_text(found.filter), f"{found.trials:,}", share_text(found.share))
+        (
+            found.filter.name,
+            found.forecast,
+            limits_text(found.filter),
+            count_text(found.trials),
+            share_text(found.share),
+        )
         for found in discards_of(run)
     ]

@@ -49,12 +49,13 @@ def stability(
 ) -> None:
     """Find where BOOK loses digits, or its numbers are not what they seem, within the ranges of its assumptions."""
     from xlmc.analysis.studies import stability as study
-    from xlmc.cli.printing import warnings
+    from xlmc.cli.printing import use_number_style, warnings
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
+    use_number_style(model.definitions.settings.number_style)
     files = Files((*output, *also), [book], overwrite=overwrite, functions=functions, of_run=True)
     files.check()
     with step_line(quiet) as tell:
@@ -62,7 +63,7 @@ def stability(
     report = _report(found, all_cells)
     written = write_files(files.writers(report))
     if as_json:
-        say_json(report.as_json())
+        say_json(report.json())
     else:
         _show(found, all_cells)
         written.print_paths()
@@ -113,6 +114,7 @@ def _show_cells(found: Stability, all_cells: bool) -> None:
 
 
 def _report(found: Stability, all_cells: bool) -> StudyReport:
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
@@ -125,7 +127,7 @@ def _report(found: Stability, all_cells: bool) -> StudyReport:
             *_sentences(found),
         ]
     )
-    below = f"{found.run.model.workbook.name}: {found.run.trials:,} trials, seed {found.run.settings.seed}"
+    below = f"{found.run.model.workbook.name}: {count_text(found.run.trials)} trials, seed {found.run.settings.seed}"
     return StudyReport("Can the digits be trusted?", below, blocks, "Stability", partial(_as_json, found), found.run)
 
 
@@ -148,6 +150,7 @@ def _finding_sentences(finding: Finding) -> Iterator[str]:
 
 
 def _cells(found: Stability, all_cells: bool) -> Table:
+    from xlmc.montecarlo.statistics.number_text import number_text
     from xlmc.outputs.document.parts import Table
 
     model = found.run.model
@@ -156,11 +159,11 @@ def _cells(found: Stability, all_cells: bool) -> Table:
         (
             cell.name or str(cell.cell),
             *([str(cell.cell)] if all_cells else []),
-            f"{cell.amplification:.3g}",
-            f"{cell.most:.3g}",
+            number_text(cell.amplification, 3),
+            number_text(cell.most, 3),
             cell.through,
-            f"{cell.rounding:.1g}",
-            f"{cell.excess:.2g}",
+            number_text(cell.rounding, 1),
+            number_text(cell.excess, 2),
         )
         for cell in found.cells
         if all_cells or cell.cell in targets
@@ -179,16 +182,19 @@ def _cells(found: Stability, all_cells: bool) -> Table:
 
 
 def _sentences(found: Stability) -> Iterator[str]:
+    from xlmc.montecarlo.statistics.number_text import count_text
+
     yield (
         "Amplifies: if each assumption changes by 1 %, the cell changes by up to so many percent, in the median trial "
         "and in one trial of 100. Through: the assumption that causes most of it. No other form of a formula makes it "
         "less. Rounding: the largest error by rounding, as a share of the central range or of the value. Excess: how "
         "many times larger that error is than the effect of rounding the assumptions alone; up to 7 in sound formulas."
     )
-    trials = f"{found.points:,} trial{'s' * (found.points != 1)}"
+    trials = f"{count_text(found.points)} trial{'s' * (found.points != 1)}"
     yield (
-        f"Examined: {trials} of a run of {found.run.trials:,}, seed {found.run.settings.seed}, among them the base "
-        f"case and the ends of all ranges; {found.recomputed:,} were computed again with 50 digits."
+        f"Examined: {trials} of a run of {count_text(found.run.trials)}, seed "
+        f"{found.run.settings.seed}, among them the base "
+        f"case and the ends of all ranges; {count_text(found.recomputed)} were computed again with 50 digits."
     )
     for cell, functions in found.unchecked:
         yield f"Not checked with 50 digits: {', '.join(functions)} in {cell}."

@@ -79,7 +79,7 @@ def give_out(
 
     written = write_files(files)
     if as_json:
-        say_json(report.as_json())
+        say_json(report.json())
     else:
         show(blocks_of(said))
         written.print_paths()

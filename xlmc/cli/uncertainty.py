@@ -74,11 +74,13 @@ def uncertainty(
     varies in an inner one.
     """
     from xlmc.analysis.studies import uncertainty as study
+    from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
+    use_number_style(model.definitions.settings.number_style)
     files = Files((*output, *also), [book], overwrite=overwrite, functions=functions)
     files.check()
     with step_line(quiet) as tell:
@@ -101,11 +103,13 @@ def uncertainty(
 
 
 def _report(found: TwoLoops) -> StudyReport:
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
     below = (
-        f"{found.run.model.workbook.name}: {found.outer:,} outer draws, {found.inner:,} trials each, "
+        f"{found.run.model.workbook.name}: {count_text(found.outer)} outer draws, "
+        f"{count_text(found.inner)} trials each, "
         f"seed {found.run.settings.seed}"
     )
     blocks = blocks_of([*_sentences(found), *_tables(found), *_meaning(found)])
@@ -114,13 +118,19 @@ def _report(found: TwoLoops) -> StudyReport:
 
 
 def _sentences(found: TwoLoops) -> Iterator[str]:
+    from xlmc.montecarlo.statistics.number_text import number_text
+
     for each in found.forecasts:
         for band in each.told:
             if band.is_share and band.low.value == band.high.value in (0.0, 1.0):
-                share, draws = band.form.number(band.low.value), f"{found.confidence:g} % of the outer draws or more"
+                share = band.form.number(band.low.value)
+                draws = f"{number_text(found.confidence)} % of the outer draws or more"
                 yield f"{_subject(each, band)} is {share} in {draws}, as far as their trials tell."
                 continue
-            yield f"{_subject(each, band)} is between {_ends(each, band)} with {found.confidence:g} % confidence."
+            yield (
+                f"{_subject(each, band)} is between {_ends(each, band)} with "
+                f"{number_text(found.confidence)} % confidence."
+            )
     if found.texts:
         yield f"Not told, since the answers are texts: {'; '.join(found.texts)}."
     if found.valueless:
@@ -181,13 +191,14 @@ def _texts(band: Band, *, is_spread: bool) -> Iterator[str]:
 
 
 def _curve(found: TwoLoops, each: ForecastBands) -> Figure:
+    from xlmc.montecarlo.statistics.number_text import number_text
     from xlmc.outputs.document.parts import Chart, Figure, Line, Lines
 
     shares = each.shares.tolist()
     columns = (("All trials", each.curve), ("Band, lower end", each.low), ("Band, upper end", each.high))
     lines = tuple(Line(name, tuple(zip(values.tolist(), shares, strict=True))) for name, values in columns)
     name = each.definition.name
-    said = f"{name}: the cumulative curve of all trials, and its {found.confidence:g} % band"
+    said = f"{name}: the cumulative curve of all trials, and its {number_text(found.confidence)} % band"
     shown = Lines(lines, "Cumulative share", share=True, form_across=each.form)
     return Figure(Chart("", _title(each), shown, said), said)
 
@@ -204,29 +215,34 @@ def _causes(found: TwoLoops) -> Table:
 
 
 def _meaning(found: TwoLoops) -> Iterator[str]:
+    from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text, styled_text
+
     run = found.run
     yield (
         f"Uncertain, drawn in the outer loop: {'; '.join(found.uncertain)}. "
         f"Variable, drawn in the inner loop: {'; '.join(found.variable) or 'none'}."
     )
     if run.accepted < run.trials:
-        empty = f" For {found.empty:,} of the outer draws no trial was accepted." if found.empty else ""
+        empty = f" For {count_text(found.empty)} of the outer draws no trial was accepted." if found.empty else ""
         few = min((each.effective for each in found.forecasts), default=0.0)
         yield (
-            f"Of {run.trials:,} trials {run.accepted:,} were accepted. An outer draw counts by its accepted trials; "
-            f"together they say as much as {few:,.0f} draws of equal weight.{empty}"
+            f"Of {count_text(run.trials)} trials {count_text(run.accepted)} were accepted. An outer "
+            "draw counts by its accepted trials; "
+            f"together they say as much as {fixed_text(few, 0)} draws of equal weight.{empty}"
         )
     if any(end.error is None for each in found.forecasts for band in each.bands for end in (band.low, band.high)):
         yield "An end without ± is decided by one or two outer draws: take more of them (--outer)."
     if found.wide:
         each, band = max(found.wide, key=lambda one: one[1].excess)
         yield (
-            f"Too wide by up to {band.excess:.0%} ({band.number} of {each.definition.name}): {found.inner:,} inner "
+            f"Too wide by up to {styled_text(band.excess, '.0%')} ({band.number} of "
+            f"{each.definition.name}): {count_text(found.inner)} inner "
             "trials scatter. More of them (--inner) make the bands narrower."
         )
     yield (
         "Each outer draw is one thing that may be true, and its inner trials show what then varies. All trials: both "
-        f"together, as xlmc simulate has them. Band: the central {found.confidence:g} % of what the outer draws give. "
+        f"together, as xlmc simulate has them. Band: the central {number_text(found.confidence)} % of "
+        "what the outer draws give. "
         "± is the standard error (Monte Carlo error) of a number; more outer draws (--outer) make that of the ends "
         "smaller."
     )

@@ -41,6 +41,7 @@ def verify(
     """Recompute the formulas of BOOK at the base case and compare with the values that Excel saved."""
     from xlmc.analysis.studies.verify import Status
     from xlmc.analysis.studies.verify import verify as check
+    from xlmc.cli.printing import use_number_style
     from xlmc.engine.engines import ENGINES
     from xlmc.excel.workbook.reader import read_workbook
     from xlmc.montecarlo.definitions.definitions_reader import read_definitions
@@ -50,6 +51,8 @@ def verify(
 
     workbook = read_workbook(book, functions=functions)
     definitions = None if everything else read_definitions(calculate_labels(workbook), ENGINES)
+    if definitions is not None:
+        use_number_style(definitions.settings.number_style)
     if definitions is not None and not definitions.forecasts and not definitions.filters:
         raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")
     files = Files((*output, *also), [book], overwrite=overwrite, functions=functions)
@@ -93,10 +96,13 @@ def _entry(cell: CellCheck) -> dict[str, object]:
 def _blocks(found: Verification, most: int) -> list[str | Block]:
     """Return what was found, with `most` differing cells."""
     from xlmc.analysis.studies.verify import Status, groups
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.document.parts import Table
 
-    counts = [f"{found.count(status):,} {status.value}" for status in Status if found.count(status)]
-    blocks: list[str | Block] = [f"{len(found.cells):,} formula cells: {', '.join(counts) or 'nothing to check'}."]
+    counts = [f"{count_text(found.count(status))} {status.value}" for status in Status if found.count(status)]
+    blocks: list[str | Block] = [
+        f"{count_text(len(found.cells))} formula cells: {', '.join(counts) or 'nothing to check'}."
+    ]
     differing = found.of(Status.DIFFERING)
     if differing:
         rows = tuple(
@@ -105,15 +111,17 @@ def _blocks(found: Verification, most: int) -> list[str | Block]:
         )
         blocks.append(Table("Differing", ("Cell", "Formula", "Excel saved", "xlmc", "Relative"), rows, (4,)))
     if len(differing) > most:
-        blocks.append(f"… and {len(differing) - most:,} more; --json lists them all.")
+        blocks.append(f"… and {count_text(len(differing) - most)} more; --json lists them all.")
     volatile = [cell for cell in found.of(Status.VOLATILE) if cell.reason]
     for status, listed in ((Status.UNSUPPORTED, found.of(Status.UNSUPPORTED)), (Status.VOLATILE, volatile)):
         for reason, cells in groups(listed):
             where = ", ".join(str(cell.cell) for cell in cells[:5])
-            more = f" and {len(cells) - 5:,} more" if len(cells) > 5 else ""
+            more = f" and {count_text(len(cells) - 5)} more" if len(cells) > 5 else ""
             blocks.append(f"{status.value}: {reason} ({where}{more})")
     return blocks
 
 
 def _percent(difference: float | None) -> str:
-    return "" if difference is None else f"{difference:.2g}"
+    from xlmc.montecarlo.statistics.number_text import number_text
+
+    return "" if difference is None else number_text(difference, 2)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import evidence_text
 from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text
 from xlmc.outputs.summary import estimate_text, share_text
 
 if TYPE_CHECKING:
@@ -50,7 +51,10 @@ _NONE: Final = "–"
 
 def trials_sentence(found: Agreement) -> str:
     """Say what the evidence is judged by."""
-    return f"Judged by {found.trials:,} trials of the same seed, of which {found.past:,} pass all other filters."
+    return (
+        f"Judged by {count_text(found.trials)} trials of the same seed, of which "
+        f"{count_text(found.past)} pass all other filters."
+    )
 
 
 def _share(item: ItemAgreement, given: bool) -> str:
@@ -68,7 +72,7 @@ def item_rows(found: Agreement) -> list[tuple[str, ...]]:
             _share(each, given=True) if several else _NONE,
             (estimate_text(each.ratio) or _NONE) if several else _NONE,
             each.chance_text or _NONE,
-            _NONE if each.best_z is None else f"{each.best_z:.2g}",
+            _NONE if each.best_z is None else number_text(each.best_z, 2),
             each.verdict.value,
         )
         for each in found.items
@@ -89,7 +93,7 @@ def move_rows(found: Agreement, forms: Mapping[str, Form]) -> list[tuple[str, ..
     return [
         (
             used,
-            f"{max(each.effective for each in answers):,.0f}",
+            fixed_text(max(each.effective for each in answers), 0),
             *(_mean(each, forms[each.forecast]) or _NONE for each in answers),
         )
         for used, answers in rows.items()

@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 from xlmc.montecarlo.columns import parts, release
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 from xlmc.montecarlo.statistics.sample import Sample, Values
 from xlmc.outputs.summary import SummaryRow, answer_text, central_text, percent, share_text, summarise
 
@@ -130,7 +130,7 @@ class Histogram:
         return f"0{_fraction(self.decimals)}"
 
     def _text(self, edge: float, decimals: int) -> str:
-        return self.form.tick(edge, decimals) if self._short else f"{edge:.4g}"
+        return self.form.tick(edge, decimals) if self._short else number_text(edge, 4)
 
     @property
     def _short(self) -> bool:

@@ -35,6 +35,7 @@ from xlmc.excel.workbook.seal import sealed_json
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.definitions.forms import Form
+from xlmc.montecarlo.definitions.number_styles import USUAL_STYLE, in_style
 from xlmc.montecarlo.statistics import Estimate, proportion
 from xlmc.montecarlo.statistics.estimate import finite
 from xlmc.outputs.filter_effect import Marginal, filter_effect_of
@@ -98,6 +99,7 @@ Json = dict[str, Any]
 _EstimateJson = dict[str, float | str | None]
 
 
+@in_style(USUAL_STYLE)
 def document(simulation: RunResult, *, command: str | None = None) -> Json:
     """Return the results of a run, every number as it is in Python and on the sheets.
 

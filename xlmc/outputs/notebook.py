@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import distribution_text, limits_text
 from xlmc.montecarlo.definitions.forms import PLAIN
+from xlmc.montecarlo.definitions.number_styles import in_style_of
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.document import further_sections
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import figures_of
@@ -39,6 +41,7 @@ def _base_text(model: CompiledModel, assumption: Assumption) -> str:
     return (dated or PLAIN).number(assumption.base)
 
 
+@in_style_of("definitions.settings.number_style")
 def model_html(model: CompiledModel) -> str:
     """Return assumptions, forecasts and filters as HTML; colours are those of the notebook."""
     assumptions = [
@@ -58,6 +61,7 @@ def model_html(model: CompiledModel) -> str:
     )
 
 
+@in_style_of("settings.number_style")
 def run_html(run: RunResult) -> str:
     """Return warnings, answers with a small histogram each, filters and notices as HTML."""
     rows = summarise(run)
@@ -69,7 +73,8 @@ def run_html(run: RunResult) -> str:
     changed = [] if run.changed_from is None else [run.changed_from.sentence]
     return "".join(
         (
-            f"<p><b>{escape(run.model.workbook.name)}</b>: accepted {run.accepted:,} of {run.evaluated:,} trials, "
+            f"<p><b>{escape(run.model.workbook.name)}</b>: accepted {count_text(run.accepted)} of "
+            f"{count_text(run.evaluated)} trials, "
             f"seed {run.settings.seed}</p>",
             *_sentences("Warning", (*changed, *run.warnings)),
             _table("Answers", headings, lines, set(range(1, len(headings))), pictures),
@@ -114,7 +119,7 @@ def _table(
         return f"<tr>{cells}{f'<td>{picture}</td>' if pictures else ''}</tr>"
 
     body = [line("td", row, pictures[i] if pictures else "") for i, row in enumerate(rows[:_ROWS])]
-    more = f"<p>… and {len(rows) - _ROWS:,} more</p>" if len(rows) > _ROWS else ""
+    more = f"<p>… and {count_text(len(rows) - _ROWS)} more</p>" if len(rows) > _ROWS else ""
     head = line("th", headings)
     caption = f"<caption style='text-align:left;font-weight:bold'>{escape(title)}</caption>"
     return f"<table style='{_STYLE}'>{caption}<thead>{head}</thead><tbody>{''.join(body)}</tbody></table>{more}"

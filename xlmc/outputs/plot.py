@@ -20,10 +20,12 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.sensitivity.one_at_a_time import one_at_a_time
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.keywords import forecast_named
 from xlmc.montecarlo.statistics import rank_correlation
+from xlmc.montecarlo.statistics.number_text import count_text, in_signs, signs, styled_text
 from xlmc.outputs.histogram import Figure as Drawn
 from xlmc.outputs.histogram import figures_of, short_name
 from xlmc.outputs.sheets.styles import DARK, GRID, INK, LIGHT
@@ -62,6 +64,7 @@ _TITLE: Final[Mapping[str, Any]] = {
 Floats = NDArray[np.float64]
 
 
+@in_style_of("settings.number_style")
 def plot(simulation: RunResult, name: str | None = None, kind: str | None = None, ax: Axes | None = None) -> Figure:
     """Draw a run.
 
@@ -209,7 +212,7 @@ def _scatter(axes: Axes, simulation: RunResult, name: str | None) -> None:
     axes.plot(draws[most][:_DOTS], answer[:_DOTS], ".", color=DARK, markersize=2.5, alpha=0.5)
     units = next(a.units for a in simulation.model.assumptions if a.name == most)
     axes.set_ylabel(", ".join(filter(None, (each.name, each.answer.units))), parse_math=False)
-    axes.set_title(f"{_heading(each)}: rank correlation {ranks[most]:.2f}", **_TITLE)
+    axes.set_title(f"{_heading(each)}: rank correlation {styled_text(ranks[most], '.2f')}", **_TITLE)
     _plain(axes, ", ".join(filter(None, (most, units))))
     _write_numbers(axes.yaxis, each)
 
@@ -302,7 +305,10 @@ def _plain(axes: Axes, below: str) -> None:
 
 def _title(simulation: RunResult) -> str:
     name = textwrap.shorten(simulation.model.workbook.name, 60, placeholder="…")
-    return f"{name}: {simulation.accepted:,} of {simulation.trials:,} trials accepted, seed {simulation.settings.seed}"
+    return (
+        f"{name}: {count_text(simulation.accepted)} of {count_text(simulation.trials)} trials "
+        f"accepted, seed {simulation.settings.seed}"
+    )
 
 
 def _write_numbers(axis: Axis, each: Drawn) -> None:
@@ -321,11 +327,13 @@ def _write_form(axis: Axis, form: Form) -> None:
         if form.kind is Kind.DATE:
             low, high = axis.get_view_interval()
             axis.set_major_locator(MultipleLocator(form.rounded_width(max((high - low) / _STEPS, 1e-5))))
-        axis.set_major_formatter(lambda value, _: _tick(form, value))
+        found = signs()  # matplotlib asks for the texts later
+        axis.set_major_formatter(lambda value, _: _tick(form, value, found))
 
 
-def _tick(form: Form, value: float) -> str:
-    return form.number(float(f"{value:.12g}")).replace("$", r"\$")  # which would begin a formula
+def _tick(form: Form, value: float, found: tuple[str, str]) -> str:
+    with in_signs(*found):
+        return form.number(float(f"{value:.12g}")).replace("$", r"\$")  # which would begin a formula
 
 
 def _draw_histogram(axes: Axes, each: Drawn) -> None:
@@ -348,9 +356,9 @@ def _draw_histogram(axes: Axes, each: Drawn) -> None:
     axes.set_ylim(0, 1.5 * most)
     axes.legend(loc="upper left", fontsize=8, frameon=False, ncols=1).set_in_layout(False)
     if bins.below or bins.above:
-        text = f"not drawn: {bins.below:,} below, {bins.above:,} above"
+        text = f"not drawn: {count_text(bins.below)} below, {count_text(bins.above)} above"
         if answer.categories:
-            text = f"not drawn: {bins.above:,} trials of rarer texts"
+            text = f"not drawn: {count_text(bins.above)} trials of rarer texts"
         axes.annotate(text, (0.99, 0.95), xycoords="axes fraction", ha="right", va="top", fontsize=8)
     _dress(axes, each, edges)
 

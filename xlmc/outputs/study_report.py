@@ -13,6 +13,7 @@ from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.seal import sealed_json, sealed_parts, sealed_text
 from xlmc.excel.workbook.target import Target, refuse_other_ending, refuse_same_file
 from xlmc.excel.workbook.writer import package_bytes, write_workbook
+from xlmc.montecarlo.definitions.number_styles import USUAL_STYLE, in_style
 from xlmc.montecarlo.statistics.estimate import finite_json
 from xlmc.outputs.document.parts import Block, Document, Paragraph
 from xlmc.outputs.sheets.page import Page
@@ -57,6 +58,11 @@ class StudyReport:
     on_sheet: Sequence[Block] | None = None
     add_sheets: Callable[[ExactBook, Styles], None] | None = None
     drawn: Callable[[], bytes] | None = None
+
+    def json(self) -> dict[str, object]:
+        """Return all that was found for programs, whose texts have the usual signs of thousands and decimals."""
+        with in_style(USUAL_STYLE):
+            return self.as_json()
 
 
 class Files:
@@ -138,7 +144,7 @@ class Files:
         elif ending in (".html", ".htm"):
             content = sealed_text(_page(report).encode(), ending, name)
         elif ending == ".json":
-            content = sealed_json(finite_json(report.as_json()), name)
+            content = sealed_json(finite_json(report.json()), name)
         else:
             content = package_bytes(sealed_parts(book_parts(report), "xl/worksheets/sheet1.xml", name))
         write_workbook(path, content, self._target(path).check)

@@ -15,14 +15,14 @@ from xlmc.engine.engine import UNDECIDED_RESULT
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
-from xlmc.montecarlo.distributions.parameters import range_text, show
+from xlmc.montecarlo.distributions.parameters import range_text
 from xlmc.montecarlo.loop.categories import labelled
 from xlmc.montecarlo.model.certain_filters import breakable
 from xlmc.montecarlo.model.draw_binding import base_point
 from xlmc.montecarlo.rare.account import probability_text
 from xlmc.montecarlo.statistics import Estimate, complement, format_estimate
 from xlmc.montecarlo.statistics.estimate import finite
-from xlmc.montecarlo.statistics.number_text import count_text, decimals_of
+from xlmc.montecarlo.statistics.number_text import count_text, decimals_of, exact_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column
@@ -245,7 +245,7 @@ def range_heading(rows: Sequence[SummaryRow]) -> str:
 
 def percent(share: float) -> str:
     """`0.51 -> 51 %`."""
-    return f"{show(100.0 * share)} %"
+    return f"{exact_text(100.0 * share)} %"
 
 
 def estimate_text(estimate: Estimate) -> str:
@@ -261,11 +261,11 @@ def share_text(estimate: Estimate) -> str:
     """
     reach = reach_text(estimate) if estimate.value in (0.0, 1.0) else ""
     if reach:
-        return f"{100.0 * estimate.value:g} %, {reach}"
+        return f"{number_text(100.0 * estimate.value)} %, {reach}"
     if math.isnan(estimate.value) or estimate.error is None:
         return ""
     if estimate.error == 0.0 and estimate.value in (0.0, 1.0):
-        return f"{100.0 * estimate.value:g} %"
+        return f"{number_text(100.0 * estimate.value)} %"
     return f"{format_estimate(100.0 * estimate.value, 100.0 * estimate.error)} %"
 
 
@@ -401,7 +401,7 @@ def shares_of(answer: SummaryRow | ForecastResult) -> Mapping[str, Estimate]:
 def rejection_rows(simulation: RunResult) -> list[tuple[str, str, str, str]]:
     """Return a row for each filter: its name, what it keeps, how many trials it rejected, and how many it alone did."""
     counts = zip(simulation.model.filters, simulation.tally.rejected, simulation.tally.only, strict=True)
-    return [(f.name, limits_text(f), f"{rejected:,}", f"{only:,}") for f, rejected, only in counts]
+    return [(f.name, limits_text(f), count_text(rejected), count_text(only)) for f, rejected, only in counts]
 
 
 def first_forecasts(told: str, shown: int, left: int) -> str:
@@ -414,4 +414,4 @@ def first_forecasts(told: str, shown: int, left: int) -> str:
     """
     total = shown + left
     more = f"for all, type --detailed {total}, or Detailed forecasts in xlmc_settings"
-    return f"{told} the first {shown:,} of {total:,} forecasts; {more}."
+    return f"{told} the first {count_text(shown)} of {count_text(total)} forecasts; {more}."

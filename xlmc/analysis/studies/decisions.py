@@ -21,7 +21,7 @@ from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import exact_text
+from xlmc.montecarlo.statistics.number_text import count_text, exact_text
 
 __all__ = [
     "MOST_COMBINATIONS",
@@ -180,7 +180,9 @@ def decide(
     decisions = _chosen(model, names)
     count = math.prod(len(each.values) for each in decisions)
     if count > MOST_COMBINATIONS:
-        message = f"The decisions have {count:,} combinations, and a table at most {MOST_COMBINATIONS:,}"
+        message = (
+            f"The decisions have {count_text(count)} combinations, and a table at most {count_text(MOST_COMBINATIONS)}"
+        )
         raise SimulationError(message, hint="Give larger steps in xlmc_decisions, or fewer decisions")
     tell = tell or (lambda _: None)
     tell("the workbook as it is")

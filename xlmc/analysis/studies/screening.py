@@ -43,7 +43,7 @@ from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = ["ACCEPTANCE_TOLERANCE", "ENDS", "AtEnds", "Cost", "Expected", "ScreenArguments", "Screening", "screen"]
 
@@ -216,7 +216,7 @@ def screen(
             give a number for any forecast.
     """
     if not acceptance_tolerance > 0.0:
-        message = f"the tolerance of the acceptance is {acceptance_tolerance:g}"
+        message = f"the tolerance of the acceptance is {number_text(acceptance_tolerance)}"
         raise SimulationError(message, hint="give a positive number, such as 0.1 for a tenth")
     stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, model.forecasts)
     wanted = [names_of(pattern, [a.name for a in model.live], "assumption that is drawn") for pattern in sets]
@@ -225,7 +225,7 @@ def screen(
     tell("the book as it is")
     run = simulate(with_plain_sampling(model), trials=trials, seed=seed, engine=engine, jobs=jobs)
     if run.accepted < 2:
-        message = f"{run.accepted} of {run.trials:,} trials were accepted, too few to compare anything with"
+        message = f"{run.accepted} of {count_text(run.trials)} trials were accepted, too few to compare anything with"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
     screened = _Screen(run, stated, chance_of(chance), acceptance_tolerance, engine, jobs, tell, asked)
     return screened.screening(wanted, ends=ends)

@@ -29,6 +29,7 @@ from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.model.cell_forms import forms_of
 from xlmc.montecarlo.model.labels import calculate_labels
 from xlmc.montecarlo.model.solving import unknown_of, with_solved_cells
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["Found", "seek"]
 
@@ -187,11 +188,13 @@ def _check(to: float, low: float | None, high: float | None) -> None:
         SimulationError: one is.
     """
     if not np.isfinite(to):
-        raise SimulationError(f"A cell cannot be {to:g}", hint="Give a number")
+        raise SimulationError(f"A cell cannot be {number_text(to)}", hint="Give a number")
     if (low is None) != (high is None):
         raise SimulationError("Only one end of the range is given", hint="Give both, or neither")
     if low is not None and high is not None and not (np.isfinite([low, high]).all() and low < high):
-        raise SimulationError(f"The range from {low:g} to {high:g} is none", hint="Give the lower end first")
+        raise SimulationError(
+            f"The range from {number_text(low)} to {number_text(high)} is none", hint="Give the lower end first"
+        )
 
 
 def _cell(workbook: Workbook, text: str) -> Cell:

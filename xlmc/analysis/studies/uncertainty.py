@@ -39,6 +39,7 @@ from xlmc.montecarlo.sampling.sampling_plan import MOST_OUTER, SamplingPlan
 from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate, Sample, percentiles, rank_correlation
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = [
     "CONFIDENCE",
@@ -243,13 +244,13 @@ def uncertainty(
     _refuse_dependent(model, names)
     plan = SamplingPlan.nested(names, outer, inner)
     if tell is not None:
-        tell(f"{outer:,} outer draws, {inner:,} trials each")
+        tell(f"{count_text(outer)} outer draws, {count_text(inner)} trials each")
     options = RunOptions.of(
         trials=outer * inner, seed=seed, engine=engine, jobs=jobs, evidence="rejection", keep_inputs=0
     )
     run = run_model(with_plain_sampling(model), options, plan=plan)
     if not run.accepted:
-        message = f"none of {run.trials:,} trials was accepted, so that there is nothing to tell"
+        message = f"none of {count_text(run.trials)} trials was accepted, so that there is nothing to tell"
         raise SimulationError(message, hint="Run xlmc simulate, which says what each filter rejects")
     asked = [f for f in model.forecasts if not wanted or f.name in wanted]
     texts = tuple(f.name for f in asked if f.name in run.labels)
@@ -277,16 +278,18 @@ def _check(outer: int, inner: int, confidence: float, percents: Sequence[float])
         SimulationError: one is.
     """
     if not LEAST_OUTER <= outer <= MOST_OUTER:
-        message = f"{outer:,} outer draws were asked for"
-        raise SimulationError(message, hint=f"Give {LEAST_OUTER} to {MOST_OUTER:,}")
+        message = f"{count_text(outer)} outer draws were asked for"
+        raise SimulationError(message, hint=f"Give {LEAST_OUTER} to {count_text(MOST_OUTER)}")
     if inner < _LEAST_INNER:
-        raise SimulationError(f"{inner:,} inner trials were asked for", hint=f"Give {_LEAST_INNER} or more")
+        raise SimulationError(f"{count_text(inner)} inner trials were asked for", hint=f"Give {_LEAST_INNER} or more")
     if not 0.0 < confidence < 100.0:
-        message = f"a confidence of {confidence:g} % was asked for"
+        message = f"a confidence of {number_text(confidence)} % was asked for"
         raise SimulationError(message, hint="Give a percentage above 0 and below 100, such as 90")
     for percent in percents:
         if not 0.0 < percent < 100.0:
-            raise SimulationError(f"{percent:g} is no percentile", hint="Percentiles lie above 0 and below 100")
+            raise SimulationError(
+                f"{number_text(percent)} is no percentile", hint="Percentiles lie above 0 and below 100"
+            )
 
 
 def _uncertain_names(model: CompiledModel, asked: Iterable[str]) -> tuple[str, ...]:
@@ -459,7 +462,7 @@ def _ordinal(percent: float) -> str:
     whole = int(percent)
     endings = {1: "st", 2: "nd", 3: "rd"} if whole == percent and whole not in (11, 12, 13) else {}
     ending = endings.get(whole % 10, "th")
-    return f"{percent:g}{ending} percentile"
+    return f"{number_text(percent)}{ending} percentile"
 
 
 def _percentiles(found: Floats, counts: NDArray[np.intp], percents: Sequence[float]) -> list[Estimate]:

@@ -13,6 +13,7 @@ from xlmc.errors import DefinitionError
 from xlmc.excel.address import Area, Cell, column_letters, column_number, parse_address, quote_sheet
 from xlmc.excel.workbook.workbook import DefinedName, Formula, Table, Workbook
 from xlmc.montecarlo.distributions.spelling import did_you_mean, nearest
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = [
     "area_of_reference",
@@ -242,6 +243,6 @@ def _column(table: Table, heading: str, where: object) -> int:
 def _checked_size(found: Cell | Area, where: object) -> Area:
     area = found if isinstance(found, Area) else Area(found.sheet, found.row, found.column, found.row, found.column)
     if area.rows * area.columns > _MOST:
-        message = f"{area} is {area.rows * area.columns:,} cells"
-        raise DefinitionError(message, where=where, hint=f"Choose a range of {_MOST:,} cells at most")
+        message = f"{area} is {count_text(area.rows * area.columns)} cells"
+        raise DefinitionError(message, where=where, hint=f"Choose a range of {count_text(_MOST)} cells at most")
     return area

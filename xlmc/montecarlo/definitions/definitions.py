@@ -36,6 +36,7 @@ __all__ = [
     "Parameter",
     "Settings",
     "Solve",
+    "StatedNumber",
 ]
 
 Parameter = float | Cell
@@ -47,6 +48,23 @@ DIALOG: Final = "Crystal Ball"
 
 CUTOFFS: Final = {"lower_cutoff": "Lower cutoff", "upper_cutoff": "Upper cutoff"}
 """Key of a cutoff -> its heading."""
+
+
+@dataclass(frozen=True, slots=True)
+class StatedNumber:
+    """A number that a formula computes, as people read it: `180,000 (=Estimate!B2)`.
+
+    Attributes:
+        value: at the base case; None where it is not known.
+        source: the formula, or its cell.
+    """
+
+    value: float | None
+    source: str
+
+    def __str__(self) -> str:
+        """Write the number with its source."""
+        return self.source if self.value is None else f"{exact_text(self.value)} ({self.source})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +128,7 @@ class Assumption:
     data: DataRange | None = None
     call: InFormula | None = None
     checked: Draw | None = field(default=None, compare=False, repr=False)
-    stated: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
+    stated: Mapping[str, StatedNumber] = field(default_factory=dict, compare=False, repr=False)
     uncertain: bool = False
 
     @property
@@ -212,7 +230,7 @@ class Filter:
         """Whether it counts where nothing switches it off, as every filter does."""
         return True
 
-    stated: Mapping[str, str] = field(default_factory=dict, compare=False, repr=False)
+    stated: Mapping[str, StatedNumber] = field(default_factory=dict, compare=False, repr=False)
 
     @property
     def formulas(self) -> dict[str, Cell]:

@@ -36,6 +36,7 @@ class RunArguments(TypedDict, total=False):
     engine: str | None
     sampling: str | None
     evidence: str | None
+    number_style: str | None
     scenarios: bool
     detailed: int | None
     jobs: int
@@ -64,6 +65,7 @@ class RunOptions:
     sampling: str | None = None
     engine: str | None = None
     evidence: str | None = None
+    number_style: str | None = None
     scenarios: bool = False
     detailed: int | None = None
     stopping: Stopping = NO_GOAL

@@ -14,6 +14,7 @@ from typing import Any, Final, Literal
 
 from xlmc.engine.engines import ENGINES
 from xlmc.montecarlo.definitions.evidence_methods import EVIDENCE_METHODS
+from xlmc.montecarlo.definitions.number_styles import STYLES, style_key
 from xlmc.montecarlo.definitions.setting_kinds import Kind, Names, Seconds, Switch, Whole, Word
 from xlmc.montecarlo.definitions.stopping import MOST_TRIALS, NO_GOAL, RARE, Stopping
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
@@ -39,6 +40,8 @@ class Settings:
         lognorm: whose `RiskLognorm` is meant, `@RISK` (also where it is empty) or `XLRisk`.
         scenarios: whether the workbook's scenarios are run, too, and compared with it.
         detailed: how many forecasts, from the first on, sensitivity, charts and page tell of; 0 for `DETAILED`.
+        number_style: the signs of thousands and decimals where people read numbers, one of `STYLES`; empty for the
+            usual ones.
     """
 
     trials: int = 200_000
@@ -50,6 +53,7 @@ class Settings:
     scenarios: bool = False
     evidence: str = ""
     detailed: int = 0
+    number_style: str = ""
 
 
 USUAL: Final = Settings()
@@ -185,6 +189,22 @@ SETTINGS: Final[dict[str, Setting]] = {
             repeat="unlike the workbook",
             options=("--detailed",),
             help=f"Forecasts, from the first on, with charts and sensitivity.  [default: the book's, else {DETAILED}]",
+            blank=True,
+            sparse=True,
+        ),
+        Setting(
+            key="number_style",
+            heading="Number style",
+            label="Number style",
+            kind=Word(
+                lambda: STYLES,
+                "There is no number style {}",
+                hint=f"Type one of these as a text, with an apostrophe before it: {';  '.join(STYLES)}",
+                spelling=style_key,
+            ),
+            repeat="unlike the workbook",
+            options=("--number-style",),
+            help="How numbers are written: 1,234.5 or 1.234,5 and so on.  [default: the book's, else 1,234.5]",
             blank=True,
             sparse=True,
         ),

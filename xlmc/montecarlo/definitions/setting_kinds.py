@@ -72,6 +72,7 @@ class Word:
         also: gives words that mean one of them in a cell.
         suggest: whether a message names the nearest word only, and not all.
         hint: what to write in a cell instead; empty for a list of the words.
+        spelling: gives what two spellings of one word share; by default `plain` does.
     """
 
     words: Callable[[], Collection[str]]
@@ -79,6 +80,7 @@ class Word:
     also: Callable[[], dict[str, str]] = dict
     suggest: bool = False
     hint: str = ""
+    spelling: Callable[[str], str] | None = None
 
     def check(self, value: str) -> None:
         """Refuse another word.

@@ -18,6 +18,7 @@ from xlmc.excel.formula import Graph, Resolver, build_graph, ir
 from xlmc.excel.formula.graph import reached
 from xlmc.excel.workbook.workbook import DataTable, Workbook
 from xlmc.montecarlo.definitions.problems import Findings
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = [
     "TABLE_REASON",
@@ -71,7 +72,7 @@ def areas_text(cells: Iterable[Cell]) -> str:
     areas = list(_columns(sorted(cells, key=lambda cell: (cell.sheet, cell.column, cell.row))))
     shown = [str(area) if area.rows > 1 else str(Cell(area.sheet, area.top, area.left)) for area in areas[:MOST]]
     rest = sum(area.rows for area in areas[MOST:])
-    return ", ".join(shown) + (f" and {rest:,} cell{'s' * (rest > 1)} more" if rest else "")
+    return ", ".join(shown) + (f" and {count_text(rest)} cell{'s' * (rest > 1)} more" if rest else "")
 
 
 def _columns(cells: Sequence[Cell]) -> Iterable[Area]:

@@ -24,6 +24,7 @@ from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.identity import Claims
 from xlmc.montecarlo.definitions.tables.table_rows import as_text, number_in
 from xlmc.montecarlo.distributions.spelling import name_key, plain
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = ["XLRiskSheet", "read_xlrisk"]
 
@@ -76,7 +77,9 @@ class XLRiskSheet:
         taken = {key: value for key, value in found.items() if value is not None and key not in stated}
         if own.stopping.has_goal:
             taken.pop("trials", None)
-        words = [f"{key} {value:,}" if isinstance(value, int) else f"{key} {value}" for key, value in taken.items()]
+        words = [
+            f"{key} {count_text(value)}" if isinstance(value, int) else f"{key} {value}" for key, value in taken.items()
+        ]
         words += [] if "lognorm" in stated else ["RiskLognorm's meaning"]
         if words:
             findings.notice(f"{', '.join(words)} are those of the sheet {self.name}, as in XLRisk", self.name)
@@ -160,7 +163,9 @@ def _read_settings(
         number = number_in("Iterations", content, cell)
         if number < 1 or number != int(number):
             hint = "Correct the number"
-            raise DefinitionError(f"Iterations must be a whole number from 1 up, not {number:g}", where=cell, hint=hint)
+            raise DefinitionError(
+                f"Iterations must be a whole number from 1 up, not {number_text(number)}", where=cell, hint=hint
+            )
         found.trials = int(number)
     for cell, content in values.get("latin hypercube", ())[:1]:
         word = plain(as_text(content.value))
@@ -174,7 +179,11 @@ def _read_settings(
         if number > 0 and number == int(number):
             found.seed = int(number)
         else:
-            why = "XLRisk's seed 0 is another one in each run" if number == 0 else f"{number:g} is no seed of xlmc"
+            why = (
+                "XLRisk's seed 0 is another one in each run"
+                if number == 0
+                else f"{number_text(number)} is no seed of xlmc"
+            )
             findings.notice(f"{why}: the seed is that of the command, of xlmc_settings, or xlmc's own", cell)
 
 
@@ -226,7 +235,9 @@ def _cells_of(workbook: Workbook, row: Cell, content: CellContent) -> Iterator[C
         if isinstance(part, Cell):
             yield Cell(sheet, part.row, part.column)
         elif part.rows * part.columns > _MOST_CELLS:
-            raise DefinitionError(f"The output {part} has more than {_MOST_CELLS:,} cells", where=row, hint=_CURE)
+            raise DefinitionError(
+                f"The output {part} has more than {count_text(_MOST_CELLS)} cells", where=row, hint=_CURE
+            )
         else:
             yield from (Cell(sheet, each.row, each.column) for each in part.cells())
 

@@ -24,6 +24,7 @@ from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.diagnostics.evidence_trials import EvidenceTrials, evidence_trials
 from xlmc.montecarlo.model.plain_words import list_of
 from xlmc.montecarlo.statistics import Estimate, Sample
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text, styled_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.evidence import Evidence, Law
@@ -117,8 +118,12 @@ class ItemAgreement:
         if math.isnan(self.chance):
             return ""
         if self.chance * self.effective / 2.0 >= 1.0:
-            return f"{100.0 * self.chance:.0f} %" if self.chance >= 0.1 else f"{100.0 * self.chance:.2g} %"
-        return f"below {200.0 * _interval(self.chance / 2.0, self.effective)[1]:.2g} %"
+            return (
+                f"{styled_text(100.0 * self.chance, '.0f')} %"
+                if self.chance >= 0.1
+                else f"{number_text(100.0 * self.chance, 2)} %"
+            )
+        return f"below {number_text(200.0 * _interval(self.chance / 2.0, self.effective)[1], 2)} %"
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,7 +143,8 @@ class Pressed:
     def sentence(self) -> str:
         """The finding in words, without a full stop."""
         return (
-            f"given the evidence, {self.share:.0%} of {self.assumption!r} lies in the {self.end} twentieth of its "
+            f"given the evidence, {styled_text(self.share, '.0%')} of {self.assumption!r} lies in the "
+            f"{self.end} twentieth of its "
             "range: the range, not the evidence, decides there"
         )
 
@@ -214,9 +220,14 @@ class Agreement:
         found = [self.sentence] if self.verdict in (Verdict.STRAINED, Verdict.TOO_FEW, Verdict.PULLS_APART) else []
         if self.best_z is not None and self.best_z > 2.0 and not self.conflicts:
             found.append(
-                f"even the trial that agrees best with the evidence is {self.best_z:.2g} standard deviations off"
+                f"even the trial that agrees best with the evidence is {number_text(self.best_z, 2)} "
+                "standard deviations off"
             )
-        far = [f"{each.name!r} ({each.mean_z:+.2g})" for each in self.items if abs(each.mean_z or 0.0) > 2.0]
+        far = [
+            f"{each.name!r} ({styled_text(each.mean_z, '+.2g')})"
+            for each in self.items
+            if each.mean_z is not None and abs(each.mean_z) > 2.0
+        ]
         if far:
             found.append(
                 f"the trials that are kept are more than two standard deviations from {list_of(far)} on average"
@@ -472,8 +483,9 @@ def _sentence(found: Agreement) -> str:
             )
         case Verdict.TOO_FEW:
             return (
-                f"too few trials to tell whether the evidence agrees: {found.past:,} of {found.trials:,} pass the "
-                f"filters, and the evidence leaves {found.effective:,.0f} in effect"
+                f"too few trials to tell whether the evidence agrees: {count_text(found.past)} of "
+                f"{count_text(found.trials)} pass the "
+                f"filters, and the evidence leaves {fixed_text(found.effective, 0)} in effect"
             )
         case Verdict.CORROBORATES:
             return f"the items corroborate each other: {_together(found)}"
@@ -485,7 +497,7 @@ def _sentence(found: Agreement) -> str:
 
 
 def _together(found: Agreement) -> str:
-    return f"together they keep {found.ratio.value:.3g} times as many trials as independent items would"
+    return f"together they keep {number_text(found.ratio.value, 3)} times as many trials as independent items would"
 
 
 def _conflict(found: Agreement, names: Sequence[str]) -> str:
@@ -497,7 +509,7 @@ def _conflict(found: Agreement, names: Sequence[str]) -> str:
             shown = list(found.items)
             every = list_of([repr(each.name) for each in shown])
             message = f"the evidence is inconsistent: no trial agrees with {every} together"
-    alone = list_of([f"{each.alone.value * 100.0:.2g} %" for each in shown])
+    alone = list_of([f"{number_text(each.alone.value * 100.0, 2)} %" for each in shown])
     they = "it keeps" if len(shown) == 1 else "they keep"
     misfits = vocabulary_of(found.model.workbook).misfits
     return (

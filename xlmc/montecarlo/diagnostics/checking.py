@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from xlmc.engine.engine import BLANK_RESULT, TEXT_RESULT
 from xlmc.errors import ErrorCode
-from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.loop.blocks import portions
 from xlmc.montecarlo.model.draw_binding import base_point
 from xlmc.montecarlo.statistics import Estimate, proportion
+from xlmc.montecarlo.statistics.number_text import count_text, exact_text, styled_text
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column
@@ -107,7 +107,7 @@ class CheckResult:
     @property
     def looked_at(self) -> str:
         """`the first 65,536 accepted trials`; without `the first` where they are all."""
-        trials = "1 accepted trial" if self.trials == 1 else f"{self.trials:,} accepted trials"
+        trials = "1 accepted trial" if self.trials == 1 else f"{count_text(self.trials)} accepted trials"
         return f"{'the first ' if self.trials < self.accepted else ''}{trials}"
 
     @property
@@ -123,7 +123,8 @@ class CheckResult:
             check = self.base.definition
             value_text = "" if self.value_text == "FALSE" else f", first with {self.value_text}"
             found.append(
-                f"{self.failed:,} of {self.looked_at} ({self.share.value:.2%}) fail the check "
+                f"{count_text(self.failed)} of {self.looked_at} "
+                f"({styled_text(self.share.value, '.2%')}) fail the check "
                 f"{check.name!r} ({check.cell}{value_text}){meaning(check)}"
             )
         return found
@@ -216,5 +217,5 @@ def _value_text(column: Column, trial: int) -> str:
     value = float(column.values[trial])
     if value in (0.0, 1.0):
         return "TRUE" if value else "FALSE"
-    shown = show(value)
+    shown = exact_text(value)
     return f"{repr(value) if shown in ('0', '-0', '1') else shown}, neither TRUE nor FALSE"

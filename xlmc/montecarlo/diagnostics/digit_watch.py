@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from xlmc.engine.graph.graph import Input
 from xlmc.engine.passes.random_rounding import RandomRounding, closure, evaluate, formula_of, numbers_of, term_sizes
 from xlmc.excel.functions.budget import TooLargeError
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
@@ -100,20 +101,23 @@ def _lost(
     dust = term_sizes(model.lowering.dag, needed, plain)
     sentences = [
         f"the digits of {name!r} cannot be trusted: rounding alone moves it by more than a thousandth of its central "
-        f"range in {np.count_nonzero(where):,} of {n:,} accepted trials (xlmc stability says where)"
+        f"range in {count_text(int(np.count_nonzero(where)))} of {count_text(n)} accepted trials "
+        f"(xlmc stability says where)"
         for name, where in lost.items()
         if _is_confirmed(model, nodes[name], draws, numbers_of(plain[nodes[name]], n), where, DUST * dust[nodes[name]])
     ]
     sentences += [
-        f"the digits of {name!r} cannot be trusted: it shows {shown:.6g} in all trials, and with 50 digits it is "
-        f"{exact:.6g} in the first (xlmc stability says where)"
+        f"the digits of {name!r} cannot be trusted: it shows {number_text(shown)} in all trials, and "
+        "with 50 digits it is "
+        f"{number_text(exact)} in the first (xlmc stability says where)"
         for name, node in still.items()
         for shown, exact in _absorbed(model, node, draws, numbers_of(plain[node], n), DUST * dust[node])
     ]
     others = {name: node for name, node in blurred.items() if not any(repr(name) in sentence for sentence in sentences)}
     return sentences + [
         f"the digits of {name!r} cannot be trusted: its spread comes from rounding. In the median trial rounding moves "
-        f"it by {error:.1g}, and its true central range is {width:.1g} wide (xlmc stability says where)"
+        f"it by {number_text(error, 1)}, and its true central range is {number_text(width, 1)} wide "
+        "(xlmc stability says where)"
         for name, node in others.items()
         for error, width in _blur(model, node, draws, numbers_of(plain[node], n))
         if width > 0 and error > MOST_OF_SPREAD * width

@@ -18,6 +18,7 @@ import numpy as np
 from xlmc.errors import Notice
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
 from xlmc.montecarlo.statistics import Sample
+from xlmc.montecarlo.statistics.number_text import number_text, styled_text
 
 __all__ = ["TornDirection", "direction_notices", "torn_direction"]
 
@@ -102,9 +103,11 @@ def _sentence(result: ForecastResult, torn: TornDirection, written: str, step: f
     middle = round(torn.mean / step) * step
     inner = f"(x{-middle:+g})" if middle else "x"
     return (
-        f"{result.definition.name!r} is a direction, and its numbers jump by a full turn: {torn.share:.2%} of the "
+        f"{result.definition.name!r} is a direction, and its numbers jump by a full turn: "
+        f"{styled_text(torn.share, '.2%')} of the "
         f"accepted trials lie beyond the jump. Its mean, standard deviation and ranges are those of the numbers, not "
-        f"of the direction, which is {torn.mean:.4g} {units} on average, with a standard deviation of "
-        f"{torn.deviation:.3g} {units}. In its cell, write =x-{written}*ROUND({inner}/{written},0), with the "
+        f"of the direction, which is {number_text(torn.mean, 4)} {units} on average, with a standard deviation of "
+        f"{number_text(torn.deviation, 3)} {units}. In its cell, write "
+        f"=x-{written}*ROUND({inner}/{written},0), with the "
         f"present formula in the place of x"
     )

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from xlmc.engine.tracking import TrackingEvaluator
 from xlmc.errors import Notice
 from xlmc.montecarlo.loop.blocks import portions
+from xlmc.montecarlo.statistics.number_text import count_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
@@ -44,8 +45,9 @@ def unsettled_notices(model: CompiledModel, drawn: Mapping[str, Floats]) -> list
             counts[index] += np.count_nonzero(column.values == 0.0)
     return [
         Notice(
-            f"{circle.name} does not settle in {count:,} of {n:,} trials that were looked at: their "
-            f"values are those after {iteration.count:,} iterations",
+            f"{circle.name} does not settle in {count_text(count)} of {count_text(n)} trials that were "
+            "looked at: their "
+            f"values are those after {count_text(iteration.count)} iterations",
             circle.cells[0],
         )
         for circle, count in zip(circles, counts.tolist(), strict=True)

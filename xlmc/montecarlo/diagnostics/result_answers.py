@@ -16,6 +16,7 @@ from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
 from xlmc.montecarlo.sampling.draws import Draw
 from xlmc.montecarlo.statistics import rank_correlation
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["Answers", "RunFacts", "Simulations"]
 
@@ -89,7 +90,7 @@ class Answers:
     def _simulated(self, asked: ResultCall, numbers: _Numbers) -> Sequence[ForecastResult]:
         number = 1.0 if asked.simulation is None else numbers(asked.simulation)
         if number is None or number not in self.simulations:
-            which = "a simulation by no number" if number is None else f"simulation {number:g}"
+            which = "a simulation by no number" if number is None else f"simulation {number_text(number)}"
             raise FormulaError(f"{asked.function} asks for {which}, and only simulate --scenarios runs further ones")
         return self.simulations[int(number)]
 

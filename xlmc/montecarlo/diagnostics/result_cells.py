@@ -25,6 +25,7 @@ from xlmc.montecarlo.definitions.in_cells.call_arguments import number_of
 from xlmc.montecarlo.definitions.in_cells.result_functions import is_result, result_call
 from xlmc.montecarlo.definitions.unavailable import areas_text
 from xlmc.montecarlo.diagnostics.result_answers import Answers
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["ShownResults", "filled_sheets", "recalculated", "shown_results"]
 
@@ -59,7 +60,7 @@ class ShownResults:
         reasons = dict.fromkeys(self.missing.values())
         listed = [f"{areas_text(c for c, why in self.missing.items() if why == each)} ({each})" for each in reasons]
         count = len(self.missing)
-        cells = "1 cell of the workbook depends" if count == 1 else f"{count:,} cells of the workbook depend"
+        cells = "1 cell of the workbook depends" if count == 1 else f"{count_text(count)} cells of the workbook depend"
         them = "it shows" if count == 1 else "they show"
         faults = "; ".join(listed)
         return f"{cells} on the run and cannot be computed, so that {them} #N/A in the result workbook: {faults}"

@@ -20,6 +20,7 @@ from xlmc.montecarlo.definitions.evidence_methods import EVIDENCE_METHODS
 from xlmc.montecarlo.diagnostics.evidence_trials import evidence_trials
 from xlmc.montecarlo.loop.blocks import portions
 from xlmc.montecarlo.model.draw_binding import parameter_target
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
@@ -77,8 +78,10 @@ class Weighting:
         """What weights mean for the numbers, and how large they are."""
         return (
             "Each accepted trial counts with the chance that the evidence would keep it (weights): together the "
-            f"{self.weights.size:,} say as much as {self.effective:,.0f} trials of equal weight (effective sample "
-            f"size), and errors and intervals allow for that. Mean weight {self.mean:.3g}, largest {self.largest:.3g}. "
+            f"{count_text(self.weights.size)} say as much as {fixed_text(self.effective, 0)} trials of "
+            "equal weight (effective sample "
+            f"size), and errors and intervals allow for that. Mean weight {number_text(self.mean, 3)}, "
+            f"largest {number_text(self.largest, 3)}. "
             "Percentiles are not given if fewer than ten effective trials lie beyond them"
         )
 

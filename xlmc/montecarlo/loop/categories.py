@@ -32,9 +32,11 @@ def labelled(column: Column) -> tuple[Column, tuple[str, ...]]:
 
 
 def _number_text(number: float) -> str:
-    from xlmc.montecarlo.statistics.number_text import exact_text  # not in every process that runs blocks
+    from xlmc.montecarlo.definitions.number_styles import USUAL_STYLE, in_style
+    from xlmc.montecarlo.statistics.number_text import exact_text
 
-    return exact_text(float(number))
+    with in_style(USUAL_STYLE):  # results are named by it
+        return exact_text(float(number))
 
 
 class Labels:

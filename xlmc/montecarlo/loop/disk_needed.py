@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.columns import column_store, free_disk
 from xlmc.montecarlo.loop.blocks import Task
+from xlmc.montecarlo.statistics.number_text import fixed_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.stopping import Stopping
@@ -53,8 +54,8 @@ class DiskNeeded:
     def sentence(self) -> str:
         """Say what a person should know before the run starts."""
         return (
-            f"This run keeps about {self.stored / 1e6:,.0f} million numbers "
-            f"and sorts {self.sorted / 1e6:,.0f} million: "
+            f"This run keeps about {fixed_text(self.stored / 1e6, 0)} million numbers "
+            f"and sorts {fixed_text(self.sorted / 1e6, 0)} million: "
             f"about {_gigabytes(self.bytes)} on disk in {self.folder} (free: {_gigabytes(self.free)})."
         )
 
@@ -116,4 +117,4 @@ def disk_needed(
 
 
 def _gigabytes(count: int) -> str:
-    return f"{count / 1e9:.2g} GB" if count < 1e10 else f"{count / 1e9:,.0f} GB"
+    return f"{number_text(count / 1e9, 2)} GB" if count < 1e10 else f"{fixed_text(count / 1e9, 0)} GB"

@@ -22,6 +22,7 @@ from xlmc.montecarlo.definitions.forms import Form, kind_of_format
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.plain_words import list_of
 from xlmc.montecarlo.statistics import Description, Estimate, Sample, errors_from_trials, too_short
+from xlmc.montecarlo.statistics.number_text import count_text, number_text, styled_text
 
 __all__ = ["FARTHEST_PART", "TELLING", "ForecastResult", "Replicates", "interval_notices", "tail_notices"]
 
@@ -276,7 +277,7 @@ def _number(given: object, what: str, most: float = math.inf) -> float:
         SimulationError: it is none, or lies outside.
     """
     limited = math.isfinite(most)
-    hint = f"Give a number from 0 to {most:g}" if limited else "Give a number, in the units of the forecast"
+    hint = f"Give a number from 0 to {number_text(most)}" if limited else "Give a number, in the units of the forecast"
     number = math.nan if isinstance(given, bool) or not isinstance(given, Real) else float(given)
     if math.isnan(number) or (limited and not 0.0 <= number <= most):
         raise SimulationError(f"{given!r} is not {what}", hint=hint)
@@ -336,4 +337,8 @@ def _named(samples: Mapping[str, Sample], concerned: Callable[[Sample], list[str
 def _farthest(sample: Sample) -> str:
     """Say what part the farthest trial has; empty where no trial has too large a part."""
     part = 0.0 if sample.yes_no else statistics.farthest_part(sample)  # the interval of a share holds
-    return f"which makes up {part:.0%} of the variance of {sample.n:,}" if part > FARTHEST_PART else ""
+    return (
+        f"which makes up {styled_text(part, '.0%')} of the variance of {count_text(sample.n)}"
+        if part > FARTHEST_PART
+        else ""
+    )

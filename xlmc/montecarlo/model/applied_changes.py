@@ -60,6 +60,7 @@ from xlmc.montecarlo.model.draw_binding import draw_of
 from xlmc.montecarlo.model.loading import filter_faults, model_with_values
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.draws import Draw
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["applied", "changed_cells", "edits"]
 
@@ -436,7 +437,7 @@ def _cutoffs(assumption: Assumption, band: Band, lowering: Lowering) -> dict[str
         message = f"the distribution of {assumption.name!r} depends on other assumptions, and so would its percentiles"
         raise DefinitionError(message, where=band.where or assumption.row, hint="give a range instead, as numbers")
     if not 0 <= band.low < band.high <= 100:
-        message = f"a band from P{band.low:g} to P{band.high:g} holds nothing of a distribution"
+        message = f"a band from P{number_text(band.low)} to P{number_text(band.high)} holds nothing of a distribution"
         raise DefinitionError(message, where=band.where or assumption.row, hint="give two percentiles that rise")
     given = {key: percent for key, percent in zip(CUTOFFS, (band.low, band.high), strict=True) if 0 < percent < 100}
     values = draw.distribution.percentile(np.array([*given.values()]) / 100)

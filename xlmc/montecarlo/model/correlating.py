@@ -14,6 +14,7 @@ from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
 from xlmc.montecarlo.sampling.copula import GaussianCopula
 from xlmc.montecarlo.sampling.copulas import Clayton, Frank, Gumbel, Joining, Reflected, SameTrials, StudentTCopula
 from xlmc.montecarlo.sampling.draws import CorrelatedGroup, Draw
+from xlmc.montecarlo.statistics.number_text import number_text, styled_text
 
 __all__ = [
     "CHANGED",
@@ -95,7 +96,11 @@ def copula_notices(groups: Sequence[CorrelatedGroup], copulas: Sequence[Copula])
         group = next((each for each in groups if each.where == copula.row), None)
         if group is None:
             continue
-        of = "" if copula.parameter is None else f" of {'theta' if not copula.matrix else 'df'} {copula.parameter:g}"
+        of = (
+            ""
+            if copula.parameter is None
+            else f" of {'theta' if not copula.matrix else 'df'} {number_text(copula.parameter)}"
+        )
         reflected = {(): "", (False, False): "", (True, True): "R", (True, False): "RX", (False, True): "RY"}[
             copula.turned[:2] or ()
         ]
@@ -152,10 +157,14 @@ def _takes_few(draw: Draw) -> bool:
 
 
 def _out_of_reach(row: Correlation, wanted: float, drawn: float) -> Notice:
-    used = "that" if abs(drawn - wanted) < CHANGED else f"{drawn:.3g}, for the other correlations leave no more"
+    used = (
+        "that"
+        if abs(drawn - wanted) < CHANGED
+        else f"{number_text(drawn, 3)}, for the other correlations leave no more"
+    )
     message = (
         f"{row.first!r} and {row.second!r} cannot have the rank correlation {show(row.number)}: equal draws share "
-        f"ranks, and with the few values that one of them takes, {wanted:.3g} is the "
+        f"ranks, and with the few values that one of them takes, {number_text(wanted, 3)} is the "
         f"{'most' if row.number > 0 else 'least'} that any two can have; they are drawn with {used}"
     )
     return Notice(message, row.row)
@@ -179,7 +188,7 @@ def _repair(group: CorrelatedGroup, asked: dict[frozenset[str], Correlation]) ->
     for i, j in combinations(range(len(group.names)), 2):
         row = asked.get(frozenset((group.names[i], group.names[j])))
         before, after = float(group.copula.wanted[i, j]), float(group.copula.spearman[i, j])
-        pair = f"{group.names[i]!r} and {group.names[j]!r} {before:g} → {after:.3f}"
+        pair = f"{group.names[i]!r} and {group.names[j]!r} {number_text(before)} → {styled_text(after, '.3f')}"
         row_text = "in no row, which counts as 0" if row is None else str(row.row)
         changes.append((-abs(after - before), f"{pair} ({row_text})"))
     changes.sort()
@@ -194,7 +203,7 @@ def _repair(group: CorrelatedGroup, asked: dict[frozenset[str], Correlation]) ->
     )
     if any(row.weight for row in asked.values() if {row.first, row.second} <= set(group.names)):
         why += ", as their adjustment weights say"
-    message = f"{why}; the largest change is {-changes[0][0]:.2g}: {'; '.join(reported)}"
+    message = f"{why}; the largest change is {number_text(-changes[0][0], 2)}: {'; '.join(reported)}"
     return Notice(message, rows[0])
 
 

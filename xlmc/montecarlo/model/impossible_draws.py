@@ -21,6 +21,7 @@ from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
 from xlmc.montecarlo.model.draw_binding import VaryingError, draw_of, parameter_target
 from xlmc.montecarlo.model.needed import Needed, targets_of
 from xlmc.montecarlo.sampling.draws import Draw
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["possible_draws", "with_errors"]
 
@@ -67,7 +68,9 @@ def with_errors(definitions: Definitions, faults: Mapping[str, DefinitionError],
 
 def _notice(reported: list[Assumption], error: DefinitionError) -> Notice:
     what = (
-        "this draw is" if len(reported) == 1 else f"{len(reported):,} draws in cells, of which this is the first, are"
+        "this draw is"
+        if len(reported) == 1
+        else f"{count_text(len(reported))} draws in cells, of which this is the first, are"
     )
     return Notice(f"{what} no distribution ({error.message}): #VALUE! in the trials that use it", reported[0].row)
 

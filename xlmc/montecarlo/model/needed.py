@@ -13,6 +13,7 @@ from xlmc.excel.formula.graph import reached
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Check, Definitions, Filter, Forecast
 from xlmc.montecarlo.definitions.evidence import Bell
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = [
     "Needed",
@@ -67,7 +68,7 @@ class Needed:
         rows = [a for a in self.idle if not isinstance(a.cell, InFormula) and not a.frozen]
         found = [notice(f"the assumption {a.name!r}", a.cell) for a in rows]
         if calls:
-            many = f"{len(calls):,} draws in cells, of which this is the first"
+            many = f"{count_text(len(calls))} draws in cells, of which this is the first"
             found.append(notice("this draw" if len(calls) == 1 else many, calls[0]))
         return tuple(found)
 
@@ -169,7 +170,10 @@ def refuse_without_base(checks: Sequence[Check], needed: Needed, definitions: De
 def _refuse_too_many(calls: Sequence[Assumption]) -> None:
     """Refuse a sheet that repeats a model in thousands of rows and draws more than a run, or its report, can take."""
     if len(calls) > MOST_CALLS:
-        message = f"the forecasts and filters need {len(calls):,} draws in cells; a run takes at most {MOST_CALLS:,}"
+        message = (
+            f"the forecasts and filters need {count_text(len(calls))} draws in cells; a run "
+            f"takes at most {count_text(MOST_CALLS)}"
+        )
         hint = "where rows repeat one model, mark the answer of a single row, and let the run repeat it"
         raise DefinitionError(message, where=calls[0].row, hint=hint)
 

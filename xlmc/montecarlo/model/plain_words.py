@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from xlmc.montecarlo.statistics.number_text import number_text
+
 __all__ = ["be", "duration", "list_of"]
 
 
@@ -31,5 +33,5 @@ def duration(seconds: float) -> str:
     """
     minutes, rest = divmod(seconds, 60)
     hours, minutes = divmod(int(minutes), 60)
-    parts = [f"{hours} h" * (hours > 0), f"{minutes} min" * (minutes > 0), f"{rest:.6g} s" * (rest > 0)]
+    parts = [f"{hours} h" * (hours > 0), f"{minutes} min" * (minutes > 0), f"{number_text(rest)} s" * (rest > 0)]
     return " ".join(part for part in parts if part)

@@ -33,6 +33,7 @@ from xlmc.montecarlo.distributions import FAMILIES, family_named
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.loading import build_model
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["FilterColumns", "ForecastColumns", "Vectorised", "function_model"]
 
@@ -264,7 +265,9 @@ def _try(body: _Body, bases: Mapping[str, float]) -> dict[str, float]:
         again = body.columns({name: np.full(_TRIED, base) for name, base in bases.items()}, _TRIED)
     for name, first, rest in zip(body.outputs, once, again, strict=True):
         if not np.allclose(rest, first[0], rtol=1e-9, atol=0.0, equal_nan=True):
-            message = f"{body.label} gives {name!r} as {first[0]:.6g}, then as {rest.tolist()}, for the same values"
+            message = (
+                f"{body.label} gives {name!r} as {number_text(first[0])}, then as {rest.tolist()}, for the same values"
+            )
             hint = "It must compute each trial from that trial's values alone, and draw nothing at random itself"
             raise FormulaError(message, hint=hint)
     return {name: float(first[0]) for name, first in zip(body.outputs, once, strict=True)}

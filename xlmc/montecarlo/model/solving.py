@@ -28,6 +28,7 @@ from xlmc.excel.functions.values import Codes, Value
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Definitions, Parameter, Solve
 from xlmc.montecarlo.definitions.stating import Which
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["Unknown", "fault_text", "unknown_of", "with_solved_cells"]
 
@@ -247,8 +248,9 @@ def _check_scan(definitions: Definitions, unknown: Unknown, solve: Solve) -> Non
     exact = np.unique(find_roots(unknown.evaluated(columns), edges[:-1], edges[1:]).values)
     if exact.size != seen.size:
         message = (
-            f"At the base case {solve.cell} has its value at {exact.size} values of {solve.by} from {low[0]:g} to "
-            f"{high[0]:g}, as a fine scan finds, and a run would find {seen.size}"
+            f"At the base case {solve.cell} has its value at {exact.size} values of {solve.by} from "
+            f"{number_text(low[0])} to "
+            f"{number_text(high[0])}, as a fine scan finds, and a run would find {seen.size}"
         )
         raise DefinitionError(message, where=solve.row, hint="Give a narrower range, in which there is one")
 

@@ -8,10 +8,9 @@ from typing import Final, TypeGuard
 
 from xlmc.excel.address import Cell, host_of
 from xlmc.excel.workbook.workbook import Workbook
-from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter, Parameter
+from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter, Parameter, StatedNumber
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.cell_forms import forms_of
-from xlmc.montecarlo.statistics.number_text import exact_text
 
 __all__ = ["with_stated_formulas"]
 
@@ -27,7 +26,7 @@ Values = Callable[[Sequence[Cell]], Mapping[Cell, float]]
 def with_stated_formulas(
     workbook: Workbook, given: Definitions, definitions: Definitions, values: Values
 ) -> Definitions:
-    """Return the definitions with each number that a formula computes in words.
+    """Return the definitions with each number that a formula computes as people read it.
 
     Args:
         workbook: that holds the formulas.
@@ -74,7 +73,7 @@ def _assumption(
     for key, cell in {**read, **assumption.formulas}.items():
         number = assumption.given.get(key)
         value = known.get(cell) if isinstance(number, Cell) or number is None else number
-        stated[key] = _text(workbook, cell, value)
+        stated[key] = _stated(workbook, cell, value)
     return replace(assumption, stated={**assumption.stated, **stated}) if stated else assumption
 
 
@@ -83,7 +82,9 @@ def _with_dates(workbook: Workbook, definitions: Definitions) -> Definitions:
     asked = [each for each in definitions.assumptions if any(map(_may_be_a_date, each.given.values()))]
     forms = zip(asked, forms_of(workbook, [host_of(each.cell) for each in asked]), strict=True) if asked else ()
     dated = {
-        each.name: {key: form.number(value) for key, value in each.given.items() if _may_be_a_date(value)}
+        each.name: {
+            key: StatedNumber(None, form.number(value)) for key, value in each.given.items() if _may_be_a_date(value)
+        }
         for each, form in forms
         if form.kind is Kind.DATE
     }
@@ -98,13 +99,12 @@ def _may_be_a_date(value: Parameter) -> TypeGuard[float]:
 
 
 def _filter(workbook: Workbook, filter_: Filter, known: Mapping[Cell, float]) -> Filter:
-    stated = {key: _text(workbook, cell, known.get(cell)) for key, cell in filter_.formulas.items()}
+    stated = {key: _stated(workbook, cell, known.get(cell)) for key, cell in filter_.formulas.items()}
     return replace(filter_, stated=stated) if stated else filter_
 
 
-def _text(workbook: Workbook, cell: Cell, value: float | None) -> str:
+def _stated(workbook: Workbook, cell: Cell, value: float | None) -> StatedNumber:
     formula = workbook.content(cell).formula
     text = "" if formula is None else f"={formula.text}"
     whole = text if "!" in text or "[" in text else f"{cell}: {text}"
-    shown = whole if 0 < len(text) <= _LONGEST else str(cell)
-    return shown if value is None else f"{exact_text(value)} ({shown})"
+    return StatedNumber(value, whole if 0 < len(text) <= _LONGEST else str(cell))

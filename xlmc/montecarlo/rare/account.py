@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from typing import Final
 
 from xlmc.montecarlo.statistics import Estimate, format_estimate
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text
 
 __all__ = ["RareAccount", "probability_text"]
 
@@ -105,12 +106,16 @@ class RareAccount:
         directions = f"{self.directions} of {self.dimensions} directions"
         return (
             f"About {_about(self.plain_trials)} plain trials would have been needed to accept as many. So the search "
-            f"learned from {self.learning:,} trials where accepted trials lie (by splitting, in {self.levels} levels"
+            f"learned from {count_text(self.learning)} trials where accepted trials lie (by splitting, "
+            f"in {self.levels} levels"
             f"{self._apart}{self._solved_for}; then by a mixture of {self.components} normal distributions in "
-            f"{directions}). It drew {self.proposals:,} further trials there. {self.proposals_accepted:,} of them pass "
+            f"{directions}). It drew {count_text(self.proposals)} further trials there. "
+            f"{count_text(self.proposals_accepted)} of them pass "
             "all filters, and each of these was kept with a chance that gives all kept trials equal weight. The "
-            f"{self.kept:,} kept trials are independent, and distributed as those that plain trials would have left "
-            f"(effective sample size {self.size:,.0f}, because a few occur more than once). {self._of_acceptance}No "
+            f"{count_text(self.kept)} kept trials are independent, and distributed as those that plain "
+            "trials would have left "
+            f"(effective sample size {fixed_text(self.size, 0)}, because a few occur more than once). "
+            f"{self._of_acceptance}No "
             "method can rule out that a separate part of the accepted region was not found."
         )
 
@@ -128,7 +133,8 @@ class RareAccount:
         if not self.fresh:
             return ""
         return (
-            f"The probability of acceptance comes from {self.fresh:,} trials that were drawn after enough had been "
+            f"The probability of acceptance comes from {count_text(self.fresh)} trials that were drawn "
+            "after enough had been "
             "kept; their number was fixed beforehand. "
         )
 
@@ -145,26 +151,34 @@ class RareAccount:
         found = []
         if self._disagree:
             found.append(
-                f"the search for rare trials has a probability of acceptance of {self.searched:.2g}, and the trials "
-                f"that it led to have {self.acceptance.value:.2g}: part of the accepted region may be missing"
+                "the search for rare trials has a probability of acceptance of "
+                f"{number_text(self.searched, 2)}, and the trials "
+                f"that it led to have {number_text(self.acceptance.value, 2)}: part of the accepted "
+                "region may be missing"
             )
         if self.missed > MOST_MISSED * self.acceptance.value:
             found.append(
                 "accepted trials were met in a part of the region that the search could not describe: "
-                f"the probability of acceptance is at least {self.acceptance.value:.2g}, and that part, from which "
-                f"there are no trials here, may add {self.missed:.2g}"
+                f"the probability of acceptance is at least {number_text(self.acceptance.value, 2)}, "
+                "and that part, from which "
+                f"there are no trials here, may add {number_text(self.missed, 2)}"
             )
         if self.implausible:
             found.append(
-                f"of {self.plain:,} plain trials {self.plain_accepted:,} were accepted, where "
-                f"{self.plain * self.acceptance.value:.2g} were to be expected: the probability of acceptance is at "
-                f"least {self.acceptance.value:.2g}, and part of the accepted region is missing"
+                f"of {count_text(self.plain)} plain trials {count_text(self.plain_accepted)} were accepted, where "
+                f"{number_text(self.plain * self.acceptance.value, 2)} were to be expected: the "
+                "probability of acceptance is at "
+                f"least {number_text(self.acceptance.value, 2)}, and part of the accepted region is missing"
             )
         rare = self.learning + self.proposals + self.checked
         if self.lost > MOST_LOST * rare:
-            found.append(f"{self.lost:,} of the {rare:,} trials of the search were lost to errors in cells")
+            found.append(
+                f"{count_text(self.lost)} of the {count_text(rare)} trials of the search were lost to errors in cells"
+            )
         if self.faulty > MOST_LOST * self.kept:
-            found.append(f"a forecast is an error in {self.faulty:,} of the {self.kept:,} accepted trials")
+            found.append(
+                f"a forecast is an error in {count_text(self.faulty)} of the {count_text(self.kept)} accepted trials"
+            )
         return found
 
 
@@ -186,4 +200,4 @@ def _about(count: float) -> str:
     if not math.isfinite(count):
         return "more than can be counted"
     size = 10 ** max(0, int(math.log10(count)) - 1)
-    return f"{round(count / size) * size:,}"
+    return count_text(round(count / size) * size)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import SimulationError
+from xlmc.montecarlo.statistics.number_text import count_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
@@ -119,9 +120,12 @@ def _fault(model: CompiledModel, settings: Settings) -> str | None:
     if not ENGINES[settings.engine].searches:
         return "the search is computed by the engine numpy"
     if len(model.live) > MOST_ASSUMPTIONS:
-        return f"{len(model.live):,} assumptions are drawn, and a search takes at most {MOST_ASSUMPTIONS:,}"
-    if (settings.stopping.accepted or 0) > MOST_WANTED:
-        return f"{settings.stopping.accepted:,} were asked for, and a search gives at most {MOST_WANTED:,}"
+        return (
+            f"{count_text(len(model.live))} assumptions are drawn, and a search takes at most "
+            f"{count_text(MOST_ASSUMPTIONS)}"
+        )
+    if (wanted := settings.stopping.accepted or 0) > MOST_WANTED:
+        return f"{count_text(wanted)} were asked for, and a search gives at most {count_text(MOST_WANTED)}"
     if settings.trials < LEAST_LIMIT:
-        return f"it takes up to {LEAST_LIMIT:,} trials, and the limit is {settings.trials:,}"
+        return f"it takes up to {count_text(LEAST_LIMIT)} trials, and the limit is {count_text(settings.trials)}"
     return None

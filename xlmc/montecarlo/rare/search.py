@@ -22,6 +22,7 @@ from xlmc.montecarlo.rare.splitting import Distance
 from xlmc.montecarlo.rare.unexplained import Evidence, Tempered, plain_assumptions, wide_assumptions
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics.estimate import Estimate, with_relative_error
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
@@ -253,17 +254,22 @@ def _failure(model: CompiledModel, function: SearchSpace, found: Found, wanted: 
         lengths = function.by_filter(nearest[index : index + 1])
         names = [repr(f.name) for f, (length,) in zip(model.filters, lengths, strict=True) if length > 0.0]
         return (
-            f"a search of {found.evaluations:,} trials found none that the filters accept: the nearest one still "
+            f"a search of {count_text(found.evaluations)} trials found none that the filters accept: "
+            "the nearest one still "
             f"fails {' and '.join(names)}, so the filters contradict each other or the assumptions, or accept less "
             "than one trial in 10¹⁵"
         )
-    share = f"about {found.learned.probability:.1g} of all trials are accepted"
+    share = f"about {number_text(found.learned.probability, 1)} of all trials are accepted"
     if found.used is None and found.learned.best is None:
-        return f"a search of {found.evaluations:,} trials found that {share}, but could not describe where they lie"
+        return (
+            f"a search of {count_text(found.evaluations)} trials found that {share}, but could not "
+            "describe where they lie"
+        )
     more = f"the part of the limit (-n) that a search may take, one in {SEARCH_PART}" if left else "the limit (-n)"
     return (
-        f"a search of {found.evaluations:,} trials found that {share}, described badly where they lie, and gave up, "
-        f"as {wanted:,} of them would take more than {more},"
+        f"a search of {count_text(found.evaluations)} trials found that {share}, described badly where "
+        "they lie, and gave up, "
+        f"as {count_text(wanted)} of them would take more than {more},"
     )
 
 

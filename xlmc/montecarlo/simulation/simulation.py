@@ -37,6 +37,7 @@ from xlmc.montecarlo.model.plain_words import list_of
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.number_text import count_text, number_text, styled_text
 from xlmc.montecarlo.statistics.sample import MOST_GROUPS
 
 if TYPE_CHECKING:
@@ -114,7 +115,7 @@ class ChangedFrom:
 
 
 def _trials(count: int) -> str:
-    return "1 trial was" if count == 1 else f"{count:,} trials were"
+    return "1 trial was" if count == 1 else f"{count_text(count)} trials were"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -307,7 +308,7 @@ class RunResult:
         found = []
         if self.accepted == 0 and self.stopped.by != "search":
             most = self.acceptance.interval
-            fewer = "" if most is None else f", or accept fewer than {most[1]:.2g} of the trials"
+            fewer = "" if most is None else f", or accept fewer than {number_text(most[1], 2)} of the trials"
             why = f"the filters contradict the assumptions{fewer}{self._by_itself}"
             if self.error_trials >= self.trials:
                 why = "every trial was lost to an error in a cell"
@@ -316,7 +317,9 @@ class RunResult:
             found.append(self.stopped.sentence)
         if self.error_trials > ERROR_SHARE * self.trials:
             share = self.error_trials / self.trials
-            found.append(f"{self.error_trials:,} trials ({share:.2%}) were lost to errors in cells")
+            found.append(
+                f"{count_text(self.error_trials)} trials ({styled_text(share, '.2%')}) were lost to errors in cells"
+            )
         failing = [warning for check in self.checks for warning in check.warnings]
         if self.agreement is not None and self.agreement.conflicts:
             failing.append(self.agreement.sentence)
@@ -383,8 +386,10 @@ class RunResult:
         if not 0 < self.accepted < LEAST_ACCEPTED * groups:
             return []
         return [
-            f"only {self.accepted:,} trials were accepted in {self.plan.replicates:,} replicates, fewer than "
-            f"{LEAST_ACCEPTED * groups:,}, so errors and intervals are not to be trusted: run more trials, or sample "
+            f"only {count_text(self.accepted)} trials were accepted in "
+            f"{count_text(self.plan.replicates)} replicates, fewer than "
+            f"{count_text(LEAST_ACCEPTED * groups)}, so errors and intervals are not to be trusted: "
+            "run more trials, or sample "
             f"by {METHODS['mc'].name}"
         ]
 
@@ -408,7 +413,9 @@ class RunResult:
         import pandas
 
         if inputs and self.kept_inputs < self.accepted:
-            message = f"the draws of {self.kept_inputs:,} of {self.accepted:,} accepted trials were kept"
+            message = (
+                f"the draws of {count_text(self.kept_inputs)} of {count_text(self.accepted)} accepted trials were kept"
+            )
             raise SimulationError(message, hint="use frame(inputs=False), or simulate(…, keep_inputs=None)")
         columns: dict[str, Any] = {
             forecast_heading(name): self._as_texts(name, values) for name, values in self.forecasts.items()

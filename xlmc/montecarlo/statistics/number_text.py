@@ -1,13 +1,21 @@
 """Numbers as people read them: all outputs write them with these functions, so that no two differ.
 
 A number has the digits that its error supports; without an error six, or all that it needs where it is exact. Thousands
-stand apart. A power of ten is written from 10¹⁵ on and below 10⁻⁴ alone. Thousands and decimals have the signs of
-1,234.5, whatever those of the machine are.
+stand apart. A power of ten is written from 10¹⁵ on and below 10⁻⁴ alone.
+
+Thousands and decimals have the signs of the setting Number style, never those of the machine. Whatever writes a whole
+text for people (a sheet, a page, a report, a frame of the live window, what a command prints) knows the run or the
+workbook, and writes it `in_style` of that (`number_styles`); elsewhere, as in JSON, the signs are those of 1,234.5.
 """
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+from decimal import Decimal
+from typing import Final
 
 __all__ = [
     "MOST_DIGITS",
@@ -16,9 +24,13 @@ __all__ = [
     "exact_text",
     "fixed_text",
     "format_estimate",
+    "in_signs",
     "is_far",
     "number_text",
+    "signs",
+    "styled_text",
     "two_digit_exponent",
+    "whole_text",
 ]
 
 MOST_DIGITS = 15
@@ -31,10 +43,50 @@ _DIGITS = 6
 _EXACT_DIGITS = range(6, 13)  # of a value whose error is 0
 _NOISE = 1e-9  # share of such a value that may come from rounding in formulas
 
+_USUAL: Final = ",", "."
+
+_SIGNS: ContextVar[tuple[str, str]] = ContextVar("signs of thousands and decimals", default=_USUAL)
+
+
+@contextmanager
+def in_signs(of_thousands: str, of_decimals: str) -> Iterator[None]:
+    """Write all numbers with these signs until the end of the block.
+
+    >>> with in_signs(".", ","):
+    ...     number_text(1234567.25), format_estimate(1234.5, 0.32)
+    ('1.234.567', '1.234,50 ± 0,32')
+    """
+    token = _SIGNS.set((of_thousands, of_decimals))
+    try:
+        yield
+    finally:
+        _SIGNS.reset(token)
+
+
+def signs() -> tuple[str, str]:
+    """Return the signs of thousands and of decimals."""
+    return _SIGNS.get()
+
+
+def _styled(text: str) -> str:
+    """Write a number that Python wrote, `1,234.5`, with the signs of the context."""
+    if (found := _SIGNS.get()) == _USUAL:
+        return text
+    return text.translate(dict(zip(map(ord, _USUAL), found, strict=True)))
+
+
+def styled_text(value: float | Decimal, form: str) -> str:
+    """Write a number by a format of Python.
+
+    >>> styled_text(0.0213, ".1%")
+    '2.1%'
+    """
+    return _styled(format(value, form))
+
 
 def count_text(count: int) -> str:
     """Write a count of trials or of anything else, `200,000`."""
-    return f"{count:,}"
+    return _styled(f"{count:,}")
 
 
 def fixed_text(value: float, decimals: int) -> str:
@@ -43,7 +95,7 @@ def fixed_text(value: float, decimals: int) -> str:
     >>> fixed_text(48211.3, -1), fixed_text(-0.001, 2)
     ('48,210', '0.00')
     """
-    return f"{round(value, decimals) + 0.0:,.{max(decimals, 0)}f}"  # + 0.0: no negative zero
+    return _styled(f"{round(value, decimals) + 0.0:,.{max(decimals, 0)}f}")  # + 0.0: no negative zero
 
 
 def is_far(value: float) -> bool:
@@ -58,9 +110,18 @@ def number_text(value: float, digits: int = _DIGITS) -> str:
     ('2,234,568', '0.3', '1e-09', '2.5e+15')
     """
     if value == 0.0 or not math.isfinite(value) or is_far(value):
-        return f"{value + 0.0:.{digits}g}"
+        return _styled(f"{value + 0.0:.{digits}g}")
     text = f"{value:,.{max(digits - 1 - two_digit_exponent(value), 0)}f}"
-    return text.rstrip("0").rstrip(".") if "." in text else text
+    return _styled(text.rstrip("0").rstrip(".") if "." in text else text)
+
+
+def whole_text(value: float) -> str:
+    """Write a number with all of its digits, without thousands, as a record holds it.
+
+    >>> whole_text(0.1 + 0.2), whole_text(200000)
+    ('0.30000000000000004', '200000')
+    """
+    return _styled(repr(float(value)).removesuffix(".0"))
 
 
 def exact_text(value: float) -> str:
@@ -103,7 +164,7 @@ def format_estimate(value: float, error: float | None, decimals: int | None = No
         return f"({scaled})e{size:+03d}"
     decimals = 1 - two_digit_exponent(error) if decimals is None else decimals
     if decimals + size >= MOST_DIGITS:  # an error below the last bit of the value
-        return f"{value:.{MOST_DIGITS}g} ± {error:.1e}"
+        return _styled(f"{value:.{MOST_DIGITS}g} ± {error:.1e}")
     return f"{fixed_text(value, decimals)} ± {fixed_text(error, decimals)}"
 
 

@@ -10,8 +10,10 @@ from xlmc.analysis.results.record import make_record
 from xlmc.analysis.studies.scenario_answers import scenario_answers
 from xlmc.errors import SimulationError
 from xlmc.excel.workbook.printable import label
+from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.case_fields import case_of
 from xlmc.outputs.document.parts import Block, Document, Heading
 from xlmc.outputs.document.sections import SECTIONS
@@ -67,6 +69,7 @@ def check_wanted_of(wanted: Wanted, model: CompiledModel) -> None:
     _forecasts(wanted, model)
 
 
+@in_style_of("settings.number_style")
 def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) -> Document:
     """Build the report of a run; the same run and the same selection give the same document.
 
@@ -95,7 +98,9 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
     number = case["Case number"]
     cover = [(name, text) for name, text in case.fields.items() if name != "Title"]
     cover += [("Workbook", workbook.name), ("SHA-256 of the workbook", workbook.sha256)]
-    cover += [("Trials", f"{simulation.evaluated:,}, of which {simulation.accepted:,} were accepted")]
+    cover += [
+        ("Trials", f"{count_text(simulation.evaluated)}, of which {count_text(simulation.accepted)} were accepted")
+    ]
     cover += [("Seed", f"{simulation.settings.seed}")]
     return Document(
         title=title,
@@ -109,6 +114,7 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
     )
 
 
+@in_style_of("settings.number_style")
 def further_sections(simulation: RunResult, output: str) -> dict[str, tuple[str, list[Block]]]:
     """Return the sections that an output shows as the report does: name -> heading and blocks.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable
 
-from xlmc.analysis.results.statements.in_words import number_text
+from xlmc.analysis.results.statements.in_words import plain_text
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.document.drawings import FONT, drawn
 from xlmc.outputs.document.element import EMPTY, Html, element, join
@@ -113,7 +113,7 @@ def shown_html(shown: Shown) -> Html:
 
 def number(value: float, shown: str) -> Html:
     """Return a number as shown, with its full value for programs that read the page."""
-    return element("data", shown, value=number_text(value))
+    return element("data", shown, value=plain_text(value))
 
 
 def estimate_html(found: Estimate, written: Callable[[Estimate], str] = estimate_text) -> Html:

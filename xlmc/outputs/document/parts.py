@@ -9,11 +9,12 @@ its format along.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import date
 from typing import Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.statistics.number_text import signs
 from xlmc.outputs.sheets.cells import Shown, shown_text
 
 __all__ = [
@@ -322,6 +323,7 @@ class Document:
         cover: fields of the cover: label and text.
         blocks: everything else, from the first page to the last.
         paper: of the pages.
+        signs: of thousands and decimals: by default those of where the document is made.
     """
 
     title: str
@@ -332,6 +334,7 @@ class Document:
     cover: tuple[tuple[str, str], ...]
     blocks: tuple[Block, ...]
     paper: Paper = "letter"
+    signs: tuple[str, str] = field(default_factory=signs)
 
     @property
     def with_next(self) -> list[tuple[Block, Block | None]]:

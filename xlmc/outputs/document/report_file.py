@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import check_folder, write_workbook
+from xlmc.montecarlo.statistics.number_text import in_signs
 from xlmc.outputs.document.build import Wanted, build
 from xlmc.outputs.document.parts import Document
 
@@ -58,13 +59,14 @@ def document_bytes(document: Document, ending: str) -> bytes:
     Raises:
         SimulationError: a library is missing, or no font has a character.
     """
-    if ending.casefold() == ".pdf":
-        from xlmc.outputs.document.typst_writer import pdf_bytes
+    with in_signs(*document.signs):
+        if ending.casefold() == ".pdf":
+            from xlmc.outputs.document.typst_writer import pdf_bytes
 
-        return pdf_bytes(document)
-    from xlmc.outputs.document.docx_writer import docx_bytes
+            return pdf_bytes(document)
+        from xlmc.outputs.document.docx_writer import docx_bytes
 
-    return docx_bytes(document)
+        return docx_bytes(document)
 
 
 def check_report_path(path: Path) -> None:

@@ -25,10 +25,9 @@ from xlmc.errors import capitalised
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.diagnostics.checking import checks_sentence
-from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.statistics import proportion
-from xlmc.montecarlo.statistics.number_text import count_text, fixed_text
+from xlmc.montecarlo.statistics.number_text import count_text, exact_text, fixed_text, number_text
 from xlmc.outputs.document.charts import influence_chart, shape_chart, shares_chart
 from xlmc.outputs.document.drawings import forecast_drawing
 from xlmc.outputs.document.equations import equations_of
@@ -224,7 +223,7 @@ def _filters(material: Material) -> Iterator[Block]:
             each.forecast,
             limits_text(each.filter),
             each.filter.because or _NONE,
-            f"{each.trials:,}",
+            count_text(each.trials),
             share_text(each.share),
         )
         for each in discards_of(simulation)
@@ -243,20 +242,20 @@ def _rejections(material: Material) -> Iterator[Block]:
     simulation = material.simulation
     tally, filters = simulation.tally, simulation.model.filters
     yield Paragraph(
-        f"A trial is accepted when all filters hold. Of {simulation.trials:,} trials, "
-        f"{simulation.accepted:,} were accepted ({share_text(simulation.acceptance)})."
+        f"A trial is accepted when all filters hold. Of {count_text(simulation.trials)} trials, "
+        f"{count_text(simulation.accepted)} were accepted ({share_text(simulation.acceptance)})."
         if simulation.rare is None
         else f"A trial is accepted when all filters hold. Rejected trials are counted among the first "
-        f"{simulation.trials:,}, drawn before the search for accepted ones began."
+        f"{count_text(simulation.trials)}, drawn before the search for accepted ones began."
     )
     lines = [
         (
             f"{number}. {each.name}",
             limits_text(each),
             each.because or _NONE,
-            f"{int(tally.rejected[number - 1]):,}",
+            count_text(int(tally.rejected[number - 1])),
             share_text(proportion(int(tally.rejected[number - 1]), simulation.trials)),
-            f"{int(tally.only[number - 1]):,}",
+            count_text(int(tally.only[number - 1])),
         )
         for number, each in enumerate(filters, 1)
     ]
@@ -340,10 +339,14 @@ def _assumptions(material: Material) -> Iterator[Block]:
     )
     early = max((values.size for values in simulation.prior.values()), default=0)
     said = (
-        f"{'Before filtering: t' if simulation.filters_act else 'T'}he first {early:,} trials. ± is the standard error."
+        f"{'Before filtering: t' if simulation.filters_act else 'T'}he first {count_text(early)} "
+        "trials. ± is the standard error."
     )
     if simulation.kept_inputs < simulation.accepted:
-        said += f" Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
+        said += (
+            f" Accepted: the first {count_text(simulation.kept_inputs)} of "
+            f"{count_text(simulation.accepted)} accepted trials."
+        )
     yield Paragraph(said, "small")
     met = correlations_met(simulation)
     if met:
@@ -351,8 +354,8 @@ def _assumptions(material: Material) -> Iterator[Block]:
             (
                 pair.first,
                 pair.second,
-                _NONE if pair.asked is None else show(pair.asked),
-                _NONE if pair.used is None else f"{pair.used:.6g}",
+                _NONE if pair.asked is None else exact_text(pair.asked),
+                _NONE if pair.used is None else number_text(pair.used),
                 _NONE if pair.accepted is None else estimate_text(pair.accepted),
             )
             for pair in met
@@ -366,7 +369,7 @@ def _assumption_row(simulation: RunResult, each: Assumption) -> list[Content]:
     words = f"{distribution_text(each)}. {each.source}".strip()
     found = filter_effect_of(simulation, each.name)
     if found is None:
-        base = "" if each.base is None else f"{each.base:.9g}"
+        base = "" if each.base is None else number_text(each.base, 9)
         return [name, words, f"{status(simulation.model, each.name, each.frozen)}: {base}", _NONE, _NONE]
     both = (found.prior, found.accepted) if simulation.filters_act else (found.prior,)
     form = simulation.model.dated.get(each.name, PLAIN)
@@ -449,7 +452,7 @@ def _checks(material: Material) -> Iterator[Block]:
         (
             each.name,
             _NONE if each.base.found is None else str(each.base.found),
-            f"{each.failed:,}",
+            count_text(each.failed),
             each.because or _NONE,
         )
         for each in checks
@@ -490,8 +493,8 @@ def _repeat(material: Material) -> Iterator[Block]:
         ("Workbook", str(record["file.name"])),
         ("SHA-256 of the workbook", str(record["file.sha256"])),
         ("Seed", str(record["settings.seed"])),
-        ("Trials", f"{record['counts.trials']:,}"),
-        ("Accepted trials", f"{record['counts.accepted']:,}"),
+        ("Trials", count_text(material.simulation.trials)),
+        ("Accepted trials", count_text(material.simulation.accepted)),
         ("Sampling", str(record["sampling.method_in_words"])),
         ("Generator", str(record["sampling.generator"])),
         ("Engine", str(record["sampling.engine"])),

@@ -14,7 +14,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
-from xlmc.analysis.results.statements.in_words import number_text
+from xlmc.analysis.results.statements.in_words import given_text, plain_text
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import (
@@ -558,7 +558,7 @@ def _amount_text(key: str, value: Parameter | Amount) -> str:
         return ("off", "on")[value]
     if isinstance(value, str):
         return value
-    return f"{number_text(value)} %" if key == "central" else number_text(value)
+    return f"{given_text(value)} %" if key == "central" else given_text(value)
 
 
 def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
@@ -580,7 +580,7 @@ def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
             if isinstance(limit, Cell) or not limit:
                 continue
             for label, factor in (("half", 0.5), ("twice", 2.0)):
-                name = f"{filter_.name} {LIMITS[key]} {number_text(limit * factor)} ({label})"
+                name = f"{filter_.name} {LIMITS[key]} {plain_text(limit * factor)} ({label})"
                 found[name] = Adjustments().having("filter", filter_.name, key, limit * factor)
     return found
 

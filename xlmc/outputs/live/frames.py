@@ -26,6 +26,7 @@ from xlmc.montecarlo.statistics import (
     rank_correlation,
 )
 from xlmc.montecarlo.statistics.estimate import finite
+from xlmc.montecarlo.statistics.number_text import number_text
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.histogram import Figure, bars_of, multiples
 from xlmc.outputs.live.protocol import Message
@@ -191,7 +192,7 @@ def _numbers(result: ForecastResult) -> list[tuple[str, Estimate]]:
             ("Mean", result.mean),
             (_SPREAD, result.standard_deviation),
             ("Minimum", minimum(sample)),
-            *((f"{percent:g} %", found[percent]) for percent in _PERCENTS),
+            *((f"{number_text(percent)} %", found[percent]) for percent in _PERCENTS),
             ("Maximum", maximum(sample)),
         ]
     return _KNOWN[result]

@@ -19,10 +19,12 @@ from xlmc.errors import SimulationError
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.target import copy_ending, free_target, refuse_existing, refuse_into_source, unused_path
 from xlmc.excel.workbook.writer import write_workbook
+from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.model.loading import build_model
 from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import ChangedFrom
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs import save
 from xlmc.outputs.json_document import save_json
 from xlmc.outputs.live.adjustments import Adjustments, in_words, scenario_of
@@ -140,6 +142,7 @@ def _is_same(first: RunResult, second: RunResult) -> bool:
     )
 
 
+@in_style_of("own.definitions.settings.number_style")
 def write_changes(state: AtRest, book: Path, *, into: bool) -> str:
     """Type the state into a copy of the workbook, or into the workbook itself, of which a copy is kept then.
 
@@ -175,7 +178,7 @@ def _summary(edited: EditedWorkbook) -> str:
     """Say how many cells were typed into, and what Excel must still do."""
     count = len(edited.cells)
     cells = f"{count} cells were typed into" if count > 1 else "1 cell was typed into"
-    formulas = f", {edited.computed:,} formulas have new values" if edited.computed else ""
+    formulas = f", {count_text(edited.computed)} formulas have new values" if edited.computed else ""
     excel = "; Excel calculates the rest when it opens the file" if edited.calculates else ""
     sheets = "; its result sheets are those of the run before" if edited.has_results else ""
     return f"{cells}{formulas}{excel}{sheets}."

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Final, TypeVar
 from watchfiles import awatch
 
 from xlmc.errors import WorkbookError, XlmcError
+from xlmc.montecarlo.definitions.number_styles import in_style
 from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.live.adjustments import Adjustments, in_words
 from xlmc.outputs.live.hand_over import KINDS, edited_state, page_of, save_result, write_changes
@@ -307,7 +308,8 @@ class OpenBook:
                 loop.call_soon_threadsafe(self._send, [sent])
 
         def run() -> Outcome:
-            return job.run(lambda: session.wanted(job), tell, time.monotonic)
+            with in_style(session.own.definitions.settings.number_style):
+                return job.run(lambda: session.wanted(job), tell, time.monotonic)
 
         try:
             outcome = await loop.run_in_executor(self._pool, run)

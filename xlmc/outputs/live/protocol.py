@@ -74,6 +74,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from xlmc.errors import XlmcError
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.live.adjustments import NONE, PARTS
 from xlmc.outputs.live.kinds import KINDS
 
@@ -207,7 +208,7 @@ def read_message(text: str | bytes) -> PageMessage:
         ProtocolError: it is nothing that a page says.
     """
     if len(text) > MOST_BYTES:
-        raise ProtocolError(f"a message of {len(text):,} characters is too long")
+        raise ProtocolError(f"a message of {count_text(len(text))} characters is too long")
     try:
         found = json.loads(text)
     except (ValueError, RecursionError) as error:

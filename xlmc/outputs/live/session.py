@@ -15,6 +15,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import XlmcError
+from xlmc.montecarlo.definitions.number_styles import in_style, in_style_of
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.outputs.live.adjustments import (
     LIMITS,
@@ -91,6 +92,8 @@ the run.
 
 _Told = tuple[int, Adjustments, RunOptions]
 """What tells a state from others: which workbook, what was changed, and trials and seed."""
+_IN_OWN_STYLE: Final = in_style_of("own.definitions.settings.number_style")
+"""What windows are told has the workbook's signs of thousands and decimals."""
 
 OPENS_WITH: Final = 3
 """Forecasts whose charts are open at first."""
@@ -156,6 +159,7 @@ class Session:
 
     # What windows are told
 
+    @_IN_OWN_STYLE
     def greeting(self) -> list[Message]:
         """Return all that a window needs that was just opened, or that comes back."""
         return [book_message(self.own), self._state(), *self._last.values(), *self._trouble()]
@@ -193,6 +197,7 @@ class Session:
 
     # What windows say
 
+    @_IN_OWN_STYLE
     def receive(self, sent: PageMessage) -> Replies:
         """Take a message.
 
@@ -315,6 +320,7 @@ class Session:
         moved = {"kind": "moved", "of": of, "name": name, "key": key, "value": own[key] if value is None else value}
         return Replies(all=[moved]) if self._dragged else True
 
+    @_IN_OWN_STYLE
     def let_go(self) -> Message:
         """Take it that no handle is dragged any more, as its window is gone; returns the state."""
         self._dragged = False
@@ -388,7 +394,9 @@ class Session:
         self._problem, self._done = None, {}
         self.behind_is = "the workbook before it was saved"
         text = f"{model.workbook.name} was saved: {'; '.join(news) or 'nothing that a run depends on changed'}"
-        return [book_message(self.own), self._state(), {"kind": "news", "text": text, "link": ""}, *self._trouble()]
+        with in_style(model.definitions.settings.number_style):
+            told = [book_message(model), self._state()]
+        return [*told, {"kind": "news", "text": text, "link": ""}, *self._trouble()]
 
     def at_rest(self) -> AtRest:
         """Return the state that is shown, with its run.
@@ -536,6 +544,7 @@ class Session:
             return _SKETCHED_DRAWS // max(len(self.own.draws), 1)
         return _SCATTERED if any(tab.key == "pairs" for tab in self.view.tabs) else 0
 
+    @_IN_OWN_STYLE
     def finish(self, job: Job, outcome: Outcome) -> list[Message]:
         """Take what a job found; returns what windows are told of it."""
         if job.stage == "sketch" or job.stage not in RUNS:
@@ -584,6 +593,7 @@ class Session:
                 messages.append(_over(job, "stopped"))
         return messages
 
+    @_IN_OWN_STYLE
     def superseded(self, job: Job) -> list[Message]:
         """Note that a job was given up: something newer is wanted, or a person stopped it."""
         if job.stage == "sketch":

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
-from xlmc.analysis.results.statements.in_words import distribution_text, limits_text, number_text
+from xlmc.analysis.results.statements.in_words import distribution_text, given_text, limits_text
 from xlmc.montecarlo.definitions.definitions import Filter
+from xlmc.montecarlo.statistics.number_text import count_text, styled_text
 from xlmc.outputs.live.adjustments import LIMITS, assumption_numbers
 
 if TYPE_CHECKING:
@@ -77,11 +78,11 @@ def _assumption(before: Assumption, after: Assumption) -> Iterator[str]:
     else:
         for key, (heading, value) in new.items():
             if value != old[key][1]:
-                yield f"{heading} {number_text(old[key][1])} → {number_text(value)}"
+                yield f"{heading} {given_text(old[key][1])} → {given_text(value)}"
     if before.frozen != after.frozen:
         yield "frozen" if after.frozen else "not frozen"
     if before.base != after.base:
-        values = ["blank" if base is None else number_text(base) for base in (before.base, after.base)]
+        values = ["blank" if base is None else given_text(base) for base in (before.base, after.base)]
         yield f"value {values[0]} → {values[1]}"
 
 
@@ -100,10 +101,13 @@ def _measured(filter_: Filter) -> object:
 
 def _forecast(before: Forecast, after: Forecast) -> Iterator[str]:
     if before.threshold != after.threshold:
-        values = ["none" if each.threshold is None else number_text(each.threshold) for each in (before, after)]
+        values = ["none" if each.threshold is None else given_text(each.threshold) for each in (before, after)]
         yield f"threshold {values[0]} → {values[1]}"
     if before.central != after.central:
-        yield f"central range {100.0 * before.central:.12g} % → {100.0 * after.central:.12g} %"
+        yield (
+            f"central range {styled_text(100.0 * before.central, '.12g')} % → "
+            f"{styled_text(100.0 * after.central, '.12g')} %"
+        )
 
 
 def _correlations(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
@@ -111,7 +115,7 @@ def _correlations(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
         {(row.first, row.second): row.value for row in model.definitions.correlations} for model in (before, after)
     )
     for pair in dict.fromkeys([*old, *new]):
-        values = [number_text(rows[pair]) if pair in rows else "none" for rows in (old, new)]
+        values = [given_text(rows[pair]) if pair in rows else "none" for rows in (old, new)]
         if values[0] != values[1]:
             yield f"correlation of {pair[0]} with {pair[1]} {values[0]} → {values[1]}"
 
@@ -136,7 +140,7 @@ def _cells(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
     ]
     if cells:
         named = ", ".join(map(str, cells[:_MOST_CELLS]))
-        more = f" and {len(cells) - _MOST_CELLS:,} more" if len(cells) > _MOST_CELLS else ""
+        more = f" and {count_text(len(cells) - _MOST_CELLS)} more" if len(cells) > _MOST_CELLS else ""
         yield f"{named}{more} changed"
 
 

@@ -26,6 +26,7 @@ from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics.estimate import finite, t_quantile
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.live.adjustments import (
     BAND,
     LIMITS,
@@ -44,7 +45,7 @@ from xlmc.outputs.live.adjustments import (
 )
 from xlmc.outputs.live.kinds import in_kind, kinds_of
 from xlmc.outputs.live.protocol import Message
-from xlmc.outputs.page.payload import CONFIDENCE
+from xlmc.outputs.page.payload import CONFIDENCE, signs_json
 
 __all__ = [
     "assumption_rows",
@@ -128,7 +129,7 @@ def _assumption(
 def _number(assumption: Assumption, key: str, heading: str, before: Parameter) -> dict[str, Any]:
     value = assumption.given.get(key)
     drags = assumption.data is None and (key in _ON_AXIS or (key[:1] == "p" and key[1:2].isdigit()))
-    return _handle(key, heading, value, before, drags=drags, cell=assumption.stated.get(key, ""))
+    return _handle(key, heading, value, before, drags=drags, cell=str(assumption.stated.get(key, "")))
 
 
 def _handle(
@@ -306,6 +307,7 @@ def book_message(model: CompiledModel) -> Message:
         "settings": _settings_text(model),
         "shapes": shapes_of(model),
         "z": t_quantile(math.inf, CONFIDENCE),
+        "signs": signs_json(),
     }
 
 
@@ -329,7 +331,7 @@ def run_row(model: CompiledModel, asked: RunOptions) -> dict[str, Any]:
 def _settings_text(model: CompiledModel) -> str:
     """Write the settings: `200,000 trials, Monte Carlo, seed 999`."""
     settings = model.definitions.settings
-    return f"{settings.trials:,} trials, {METHODS[settings.sampling].name}, seed {settings.seed}"
+    return f"{count_text(settings.trials)} trials, {METHODS[settings.sampling].name}, seed {settings.seed}"
 
 
 def scenario_rows(definitions: Definitions, stored: Mapping[str, Adjustments]) -> Iterator[Message]:

@@ -13,6 +13,7 @@ import numpy as np
 
 from xlmc.analysis.studies.methods import STATISTICS, Curve, Runs, Study
 from xlmc.analysis.studies.methods.curve import Rms
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 from xlmc.outputs.methods.speed_chart import HOW_TO_READ, Line, Picture, Work, column_of, guides_of, picture_of, spread
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ def _below(study: Study, picture: Picture | None) -> str:
     label = (
         f"Each number apart: root mean square error over up to {study.replicates} runs and "
         f"{len(study.model.forecasts)} forecasts, in % of the 5–95 % range, against the trials of a run. "
-        f"Reference: {study.reference.trials:,} trials. Bars: 95 % intervals of the errors themselves. "
+        f"Reference: {count_text(study.reference.trials)} trials. Bars: 95 % intervals of the errors themselves. "
         "Dotted: not run, but carried on by the law that the runs follow."
     )
     absent = " ".join(picture.absent) if picture is not None else ""
@@ -276,7 +277,7 @@ def _style_axes(axis: Axes) -> None:
 def _tick(value: float, _: float) -> str:
     """`0.01`, `100`, `10⁴`."""
     if 1e-3 <= value < 1e4:
-        return f"{value:,.12g}"
+        return number_text(value, 12)
     power = str(round(math.log10(value))).translate(str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"))
     return f"10{power}"
 

@@ -14,6 +14,7 @@ from xlmc.montecarlo.definitions.forms import Form, span_text
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text, styled_text
 from xlmc.outputs.document.parts import Table
 from xlmc.outputs.summary import share_text
 
@@ -60,7 +61,7 @@ def reference_table(study: Study) -> Table:
         rows.append((forecast.name, forecast.units, *numbers))
     how = METHODS[found.sampling].name
     title = (
-        f"Reference: {found.trials:,} trials ({how}, engine {found.engine}, seed {found.seed}), "
+        f"Reference: {count_text(found.trials)} trials ({how}, engine {found.engine}, seed {found.seed}), "
         f"{accepted_text(study)}, {seconds_text(found.seconds)}"
     )
     return _table(title, ("Forecast", "Units", *STATISTICS.values()), rows, 2)
@@ -83,13 +84,13 @@ def error_table(study: Study) -> Table:
 def _cells(study: Study, curve: Curve) -> Iterator[str]:
     runs = curve.lengths[-1]
     drawn = curve not in study.once
-    yield f"{runs.budget:,}" if drawn else _NONE
+    yield count_text(runs.budget) if drawn else _NONE
     yield ("" if runs.measured else "≈ ") + seconds_text(runs.seconds)
-    yield f"{runs.evaluations:,.0f}"
+    yield fixed_text(runs.evaluations, 0)
     for statistic in STATISTICS:
         yield _share_text(runs.shares[statistic], 0.0 if drawn else floor_of(study, statistic))
     yield _accepted_share(study, runs)
-    yield _NONE if runs.effective is None else f"{runs.effective:,.0f}"
+    yield _NONE if runs.effective is None else fixed_text(runs.effective, 0)
     yield slope_text(curve.slope("mean", "budget"))
     yield _need_text(study, curve) if drawn else near_text(study, curve)
 
@@ -127,14 +128,14 @@ def length_table(study: Study) -> Table:
         rows += [
             (
                 curve.method.name,
-                _NONE if curve in study.once else f"{runs.budget:,}",
-                f"{_runs(runs):,}",
+                _NONE if curve in study.once else count_text(runs.budget),
+                count_text(_runs(runs)),
                 ("" if runs.measured else "≈ ") + seconds_text(runs.seconds),
-                f"{runs.evaluations:,.0f}",
+                fixed_text(runs.evaluations, 0),
                 *(_share_text(runs.shares[each], floors[each]) for each in STATISTICS),
                 _accepted_share(study, runs),
-                _NONE if runs.effective is None else f"{runs.effective:,.0f}",
-                f"{runs.failed:,}" if runs.failed else _NONE,
+                _NONE if runs.effective is None else fixed_text(runs.effective, 0),
+                count_text(runs.failed) if runs.failed else _NONE,
             )
             for runs in (curve.lengths if curve.answers else ())
         ]
@@ -156,7 +157,7 @@ def forecast_table(study: Study) -> Table:
             _of_kind(form, each, study.reference.theory(forecast.name, each, trials), np.nan, spread=True)
             for each in STATISTICS
         )
-        rows.append((forecast.name, forecast.units, f"Theory, {trials:,} independent trials", *theory))
+        rows.append((forecast.name, forecast.units, f"Theory, {count_text(trials)} independent trials", *theory))
         for curve in study.every:
             if curve.answers:
                 found = {each: curve.lengths[-1].errors[forecast.name, each] for each in STATISTICS}
@@ -177,7 +178,7 @@ def bounds_table(study: Study) -> Table:
         central = _NONE if form.kind is Kind.YES_NO else _ends(form, answer.low, answer.high)
         rows.append((forecast.name, forecast.units, *(_ends(form, *each) for each in found), central))
     last = [curve.lengths[-1] for curve in curves]
-    rows.append(("Evaluations", "", *(f"{runs.evaluations:,.0f}" for runs in last), ""))
+    rows.append(("Evaluations", "", *(fixed_text(runs.evaluations, 0) for runs in last), ""))
     rows.append(("Time", "", *(seconds_text(runs.seconds) for runs in last), ""))
     headings = ("Forecast", "Units", *(curve.method.name for curve in curves), "Reference, central range")
     return _table("Bounds: what is possible", headings, rows, 2)
@@ -192,7 +193,9 @@ def ends_lines(study: Study) -> list[tuple[str, str]]:
             value = curve.ranges[name][end == "most"]
             said = study.reference.form(name).rough(value)
             sentence = f"{'Lowest' if end == 'least' else 'Highest'} {name}: {said}{units[name]}"
-            found.append((sentence, "; ".join(f"{assumption} = {at:.10g}" for assumption, at in point.items())))
+            found.append(
+                (sentence, "; ".join(f"{assumption} = {number_text(at, 10)}" for assumption, at in point.items()))
+            )
     return found
 
 
@@ -263,7 +266,7 @@ def _number(value: float) -> str:
     """Two significant digits, whole numbers from 10 on; a dash where there is none."""
     if not np.isfinite(value):
         return _NONE
-    return f"{value:,.0f}" if abs(value) >= 10 else f"{value:#.2g}"
+    return fixed_text(value, 0) if abs(value) >= 10 else styled_text(value, "#.2g")
 
 
 def _share_text(share: float, floor: float) -> str:
@@ -279,7 +282,7 @@ def percent_text(share: float) -> str:
 
 def slope_text(slope: float) -> str:
     """`−0.49`."""
-    return _NONE if not np.isfinite(slope) else f"{slope:.2f}".replace("-", "−")
+    return _NONE if not np.isfinite(slope) else styled_text(slope, ".2f").replace("-", "−")
 
 
 def _table(title: str, headings: Sequence[str], rows: Sequence[tuple[str, ...]], first: int = 1) -> Table:

@@ -18,6 +18,7 @@ from xlmc.analysis.studies.methods import Curve, Study
 from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
 from xlmc.analysis.studies.methods.law import law
 from xlmc.analysis.studies.methods.need import Choice, Need, choice, reach_of, seconds_of, shortfall
+from xlmc.montecarlo.statistics.number_text import number_text
 from xlmc.outputs.methods.methods_tables import near_text
 
 __all__ = [
@@ -217,7 +218,7 @@ def _scale(study: Study) -> float:
 
 def _accuracy_text(study: Study, height: float) -> str:
     _, value, relative = study.accuracy
-    return f"{height:g} %" if relative else f"{height * value:g}"
+    return f"{number_text(height)} %" if relative else number_text(height * value)
 
 
 def _upwards(study: Study) -> str:

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 from xlmc.outputs.document.charts import shares_chart
 from xlmc.outputs.document.element import EMPTY, Html, element, join, void
 from xlmc.outputs.document.html_writer import estimate_html, picture_html, share_html
@@ -70,9 +71,11 @@ def _how_to_read(simulation: RunResult, figures: Sequence[Figure]) -> Iterator[H
     if max(figure.answer.trials for figure in figures) > most:
         yield element(
             "p",
-            f"Of a forecast with more than {most:,} trials the page holds only {most:,} values, evenly spaced in the "
+            f"Of a forecast with more than {count_text(most)} trials the page holds only "
+            f"{count_text(most)} values, evenly spaced in the "
             "sorted trials, and the number of trials between them. So the count at an end may be wrong by up to "
-            f"{100 / (most - 1):.2g} % of the trials, as the certainty says; it is exact at the ends of the central "
+            f"{number_text(100 / (most - 1), 2)} % of the trials, as the certainty says; it is exact "
+            "at the ends of the central "
             "range.",
             class_="remark",
         )
@@ -142,7 +145,7 @@ def _statistics(result: ForecastResult) -> Html:
         "Mean": found.mean,
         "Standard deviation": found.standard_deviation,
         "Minimum": found.minimum,
-        **{f"{each:g} %": found.percentiles[each] for each in _PERCENTS},
+        **{f"{number_text(each)} %": found.percentiles[each] for each in _PERCENTS},
         "Maximum": found.maximum,
     }
     rows = (

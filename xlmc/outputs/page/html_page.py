@@ -22,6 +22,8 @@ from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.seal import sealed_text
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import check_folder, write_workbook
+from xlmc.montecarlo.definitions.number_styles import in_style_of
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.document import further_sections
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import blocks_html
@@ -143,6 +145,7 @@ def check_page_path(path: Path) -> None:
     check_folder(path)
 
 
+@in_style_of("settings.number_style")
 def page_text(simulation: RunResult, *, beside: RunResult | None = None, command: str | None = None) -> str:
     """Return the page of a run as HTML; the same run gives the same text.
 
@@ -251,7 +254,10 @@ def _hashes(texts: list[str]) -> Iterator[str]:
 
 
 def _header(simulation: RunResult, parts: Mapping[str, str]) -> Html:
-    run = f"{simulation.evaluated:,} trials, {simulation.accepted:,} accepted; seed {simulation.settings.seed}"
+    run = (
+        f"{count_text(simulation.evaluated)} trials, {count_text(simulation.accepted)} accepted; "
+        f"seed {simulation.settings.seed}"
+    )
     links = (element("a", label, href=f"#{key}") for key, label in parts.items())
     return element(
         "header",

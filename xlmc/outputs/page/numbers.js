@@ -1,12 +1,22 @@
 "use strict";
 // Numbers as people read and type them.
 
+/** The signs of thousands and decimals, which the page or the window sets to those of its run. */
+const SIGNS = { thousands: ",", decimal: "." };
+
+/** "1234.5", as JavaScript writes it -> "1.234,5", or "1234,5" without groups, in the signs of the run. */
+function styled(plain, grouped = true) {
+  const [whole, part] = plain.split(".");
+  const groups = grouped && !plain.includes("e") ? whole.replace(/\B(?=(\d{3})+$)/g, SIGNS.thousands) : whole;
+  return part === undefined ? groups : `${groups}${SIGNS.decimal}${part}`;
+}
+
 /** 51.23, 0.84 -> "51.23 ± 0.84": the error to two digits, the value to the same decimal, as everywhere in xlmc. */
 function estimateText(value, error) {
   const decimals = 1 - exponentOf(error);
-  if (decimals >= 0) return `${value.toFixed(decimals)} ± ${error.toFixed(decimals)}`;
   const unit = 10 ** -decimals;
-  return `${Math.round(value / unit) * unit} ± ${Math.round(error / unit) * unit}`;
+  const rounded = (number) => styled(decimals >= 0 ? number.toFixed(decimals) : `${Math.round(number / unit) * unit}`, false);
+  return `${rounded(value)} ± ${rounded(error)}`;
 }
 
 /** The power of ten of a number rounded to two digits: 0.00996 -> -2. */
@@ -24,20 +34,25 @@ function decimalsOf(step) {
 
 /** 3542 -> "3,542". */
 function countText(count) {
-  return Math.round(count).toString().replace(/\B(?=(\d{3})+$)/g, ",");
+  return styled(Math.round(count).toString());
 }
 
 /** A number with some decimals, or with a power of ten where it is very large or small. */
 function valueText(value, decimals) {
   if (value === Infinity) return "∞";
   if (value === -Infinity) return "−∞";
-  if (decimals > 6 || Math.abs(value) >= 1e9) return String(Number(value.toPrecision(7)));
-  return value.toFixed(Math.max(decimals, 0));
+  if (decimals > 6 || Math.abs(value) >= 1e9) return shortText(value, 7);
+  return styled(value.toFixed(Math.max(decimals, 0)), false);
+}
+
+/** A number in so many digits at most, as it can be typed. */
+function shortText(value, digits) {
+  return styled(String(Number(value.toPrecision(digits))), false);
 }
 
 /**
  * A number in the form of its forecast: 31.9 %, $48,210, 2026-03-01. `form` has what it is multiplied by, what stands
- * before and after it, the signs of thousands and decimals, and of dates whether the `day` or the `time` is shown.
+ * before and after it, and of dates whether the `day` or the `time` is shown.
  */
 function formText(value, decimals, form) {
   if (!Number.isFinite(value)) return valueText(value, decimals);
@@ -45,9 +60,7 @@ function formText(value, decimals, form) {
   const scaled = Math.abs(value * form.factor);
   const most = Math.max(0, decimals - Math.round(Math.log10(form.factor)));
   const plain = scaled >= 1e15 || (scaled > 0 && scaled < 1e-4) ? String(Number(scaled.toPrecision(7))) : scaled.toFixed(most);
-  const [whole, part] = plain.split(".");
-  const grouped = plain.includes("e") ? whole : whole.replace(/\B(?=(\d{3})+$)/g, form.thousands);
-  const text = part === undefined ? grouped : `${grouped}${form.decimal}${part}`;
+  const text = styled(plain);
   return `${value < 0 && /[1-9]/.test(text) ? "-" : ""}${form.before}${text}${form.after}`;
 }
 
@@ -87,9 +100,14 @@ const GROUPS = [
 ];
 const DECIMAL = /^(?:\d+[.,]?\d*|[.,]\d+)$/; // a comma that separates no thousands is a decimal comma: 0,7
 
-/** A number without a sign as people write it: 6700, 6,700, 6 700, 1.5e3, 0,7; NaN where it is none. */
+/**
+ * A number without a sign as people write it: 6700, 6,700, 6 700, 1.5e3, 0,7; NaN where it is none. What the signs of
+ * the run say comes first: 1.234 is a thousand and more in the style 1.234,5.
+ */
 function plainNumber(text) {
   const [, digits, power] = text.match(/^(.*?)(e[+-]?\d{1,4})?$/is);
+  if (SIGNS.thousands === "." && /^\d{1,3}(?:\.\d{3})+$/.test(digits)) return Number(digits.replaceAll(".", "") + (power ?? ""));
+  if (SIGNS.decimal === "," && /^\d+,\d+$/.test(digits)) return Number(digits.replace(",", ".") + (power ?? ""));
   const grouped = GROUPS.findIndex((groups) => groups.test(digits));
   if (grouped < 0) return DECIMAL.test(digits) ? Number(digits.replace(",", ".") + (power ?? "")) : NaN;
   const whole = digits.replace(grouped < 1 ? /,/g : grouped < 2 ? /[ \u00a0\u2009\u202f'\u2019]/g : /\./g, "");

@@ -33,7 +33,7 @@ class Overlay {
     const options = chartOptions(widthOf(this.element), ends, top, forecast, this.view);
     if (this.view === "frequency") {
       options.axes[1].label = `Accepted trials, % per ${units || "unit"}`;
-      options.axes[1].values = (_, splits) => splits.map((split) => String(Number(split.toPrecision(6))));
+      options.axes[1].values = (_, splits) => splits.map((split) => shortText(split, 6));
     }
     options.hooks = { draw: [(chart) => shapes.forEach((shape, i) => trace(chart, shape, COLOURS[i % COLOURS.length], DASHES[i % DASHES.length]))] };
     this.chart = new uPlot(options, [ends, [0, top]], this.element);

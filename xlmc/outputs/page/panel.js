@@ -181,7 +181,7 @@ class Panel {
     const found = this.certainty();
     this.box("low").value = lowText;
     this.box("high").value = highText;
-    this.box("share").value = share === null ? found.text.split(" ")[0] : String(Number((100 * share).toPrecision(12)));
+    this.box("share").value = share === null ? found.text.split(" ")[0] : shortText(100 * share, 12);
     for (const box of ["low", "high", "share"]) this.box(box).removeAttribute("aria-invalid");
     this.find(".fault").textContent = "";
     this.say(found);
@@ -207,7 +207,7 @@ class Panel {
     const { units, trials } = this.forecast;
     const element = this.find(".certainty");
     const decimals = Math.max(0, 1 - exponentOf(100 * share.error));
-    const ends = [share.low, share.high].map((end) => (100 * end).toFixed(decimals));
+    const ends = [share.low, share.high].map((end) => styled((100 * end).toFixed(decimals)));
     const about = doubt ? `about ${countText(count)}` : countText(count);
     const off = doubt ? `, off by ${countText(Math.ceil(doubt))} at most` : "";
     const unit = units ? ` ${units}` : "";
@@ -247,7 +247,7 @@ class Panel {
       const i = Math.min(Math.max(lastUpTo(bins.edges, value), 0), bins.counts.length - 1);
       const [from, to] = [bins.edges[i], bins.edges[i + 1]].map((edge) => this.written(edge, bins.decimals));
       const bar = bins.whole && !bins.numbers ? this.written(bins.edges[i] + 0.5, 0) : `${from} to below ${to}`;
-      const percent = ((100 * bins.counts[i]) / trials).toFixed(2);
+      const percent = styled(((100 * bins.counts[i]) / trials).toFixed(2));
       return `${bar}${unit}: ${countText(bins.counts[i])} trials, ${percent} %`;
     }
     const reverse = this.state.view === "reverse";

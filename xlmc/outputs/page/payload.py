@@ -25,6 +25,7 @@ from numpy.typing import NDArray
 from xlmc.montecarlo.columns import picked, release
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics.estimate import t_quantile
+from xlmc.montecarlo.statistics.number_text import number_text, signs
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.page.fitted_curves import FittedCurve, fitted_curves
 from xlmc.outputs.page.second_run import partner_of
@@ -76,6 +77,7 @@ def payload(simulation: RunResult, figures: Sequence[Figure], beside: RunResult 
     most = most_values(len(figures) * (1 if beside is None else 2))
     return {
         "z": t_quantile(math.inf, CONFIDENCE),
+        "signs": signs_json(),
         "forecasts": [
             {
                 **forecast_payload(simulation, each, most, fits=number < MOST_FITTED),
@@ -154,7 +156,7 @@ def _fit(curve: FittedCurve) -> dict[str, Any]:
     return {
         "name": curve.name,
         "parameters": curve.parameters,
-        "distance": f"{100 * curve.distance:.2g} %",
+        "distance": f"{number_text(100 * curve.distance, 2)} %",
         "parts": curve.parts,
         "shares": curve.shares.tolist(),
     }
@@ -164,14 +166,18 @@ def _unless_all(usual: int, numbers: NDArray[np.int64]) -> list[int] | None:
     return None if bool(np.all(numbers == usual)) else numbers.tolist()
 
 
+def signs_json() -> dict[str, str]:
+    """Return the signs of thousands and decimals, which the script writes and reads numbers with."""
+    return dict(zip(("thousands", "decimal"), signs(), strict=True))
+
+
 def form_json(form: Form) -> dict[str, Any]:
     """How the script writes numbers of a forecast."""
     before, after = form.affixes
     moment = None
     if form.kind is Kind.DATE:
         moment = form.shows
-    signs_of = {"thousands": ",", "decimal": "."}
-    return {"factor": form.factor, "before": before, "after": after, "moment": moment, "epoch": form.epoch, **signs_of}
+    return {"factor": form.factor, "before": before, "after": after, "moment": moment, "epoch": form.epoch}
 
 
 def _bins(figure: Figure) -> dict[str, Any]:

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.statements.in_words import distribution_text, limits_text, status
-from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.number_text import count_text, exact_text, number_text
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import estimate_html, share_html
 from xlmc.outputs.summary import SummaryRow, percent, summarise
@@ -36,7 +36,8 @@ def second_run(first: RunResult, second: RunResult) -> Html:
     """Return the section that says what the second run is, and how its answers differ."""
     model, rows = second.model, summarise(first)
     said = (
-        f": {second.evaluated:,} trials, {second.accepted:,} accepted; seed {second.settings.seed}. In each chart the "
+        f": {count_text(second.evaluated)} trials, {count_text(second.accepted)} accepted; seed "
+        f"{second.settings.seed}. In each chart the "
         "dashed purple line is the second run, as if it had as many accepted trials as the first; its certainty stands "
         "below that of the first."
     )
@@ -93,7 +94,7 @@ def _numbers(first: SummaryRow, second: SummaryRow) -> Iterator[tuple[str, Estim
         yield "to", first.high, second.high, False
     threshold = first.threshold if first.threshold == second.threshold else None
     if threshold is not None and first.above is not None and second.above is not None:
-        yield f"Above {show(threshold)}", first.above, second.above, True
+        yield f"Above {exact_text(threshold)}", first.above, second.above, True
 
 
 def _difference(first: Estimate, second: Estimate) -> Estimate:
@@ -114,7 +115,7 @@ def _given_to(run: RunResult) -> _Given:
     model = run.model
     found = {("Run", what): (what, said) for what, said in _settings(run)}
     for a in model.assumptions:
-        words = f"held at {a.base:.6g}" if a.frozen and a.base is not None else distribution_text(a)
+        words = f"held at {number_text(a.base)}" if a.frozen and a.base is not None else distribution_text(a)
         unused = "" if status(model, a.name, a.frozen) in ("drawn", "frozen") else ", not needed"
         found["Assumption", name_key(a.name)] = a.name, words + unused
     return found | {("Filter", name_key(f.name)): (f.name, limits_text(f)) for f in model.filters}
@@ -124,8 +125,8 @@ def _settings(run: RunResult) -> Iterator[tuple[str, str]]:
     yield "Workbook", run.model.workbook.name
     yield "Fingerprint", run.model.workbook.sha256[:16]
     yield "Seed", str(run.settings.seed)
-    yield "Trials", f"{run.evaluated:,}"
-    yield "Accepted", f"{run.accepted:,}"
+    yield "Trials", count_text(run.evaluated)
+    yield "Accepted", count_text(run.accepted)
     yield "Sampling", run.settings.sampling
     yield "Engine", run.settings.engine
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from xlmc.analysis.results.statements.in_words import number_text
+from xlmc.analysis.results.statements.in_words import given_text
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.outputs.document.charts import contribution_chart, influence_chart, limit_chart, tornado_chart
 from xlmc.outputs.document.element import EMPTY, Html, element
@@ -87,7 +87,7 @@ def limits(found: Sensitivities) -> Html:
 
 
 def _limit(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> Html:
-    heading = element("h3", f"{limit.filter}: {limit.relation} {number_text(limit.limit)} ({limit.cell})")
+    heading = element("h3", f"{limit.filter}: {limit.relation} {given_text(limit.limit)} ({limit.cell})")
     if not limit.points:
         said = "The accepted trials do not say by how much it could be moved."
         return element("article", heading, element("p", said))

@@ -7,18 +7,19 @@ from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.record import Entry, Record, RecordTable, Section, Value
 from xlmc.analysis.results.statements import pairs_of
-from xlmc.analysis.results.statements.in_words import distribution_text, number_text, status
+from xlmc.analysis.results.statements.in_words import distribution_text, status
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.number_text import count_text, styled_text, whole_text
 from xlmc.outputs.document.charts import shape_chart
 from xlmc.outputs.document.element import EMPTY, Html, element
 from xlmc.outputs.document.html_writer import estimate_html, number, picture_html
 from xlmc.outputs.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of
 from xlmc.outputs.page.flow import Flow
 from xlmc.outputs.sheets.accounting import write_accounting, write_checks
-from xlmc.outputs.sheets.assumptions_sheet import MEANING, MOVED, NARROWED, STRATIFIED, write_correlations
+from xlmc.outputs.sheets.assumptions_sheet import MOVED, NARROWED, STRATIFIED, meaning_text, write_correlations
 from xlmc.outputs.sheets.cells import NONE
 from xlmc.outputs.sheets.certainty_sheet import write_ranges
 from xlmc.outputs.sheets.evidence_sheet import write_agreement
@@ -44,7 +45,7 @@ __all__ = [
     "statistics",
 ]
 
-_HEADS = ("Assumption", "Trials", "Mean", "Standard deviation", *(f"{each:g} %" for each in PERCENTS))
+_HEADS = ("Assumption", "Trials", "Mean", "Standard deviation", *(f"{styled_text(each, 'g')} %" for each in PERCENTS))
 
 _CHANGES = ("Shift of mean in SDs", "SD accepted / before")
 
@@ -136,7 +137,7 @@ def assumptions(simulation: RunResult) -> Html:
     return element(
         "section",
         element("h2", "Assumptions, before filtering and accepted" if simulation.filters_act else "Assumptions"),
-        *([element("p", MEANING)] if simulation.filters_act else []),
+        *([element("p", meaning_text())] if simulation.filters_act else []),
         *(element("p", said, class_="remark") for said in _remarks(simulation)),
         element("div", table, class_="wide-table paired"),
         correlations.html,
@@ -147,11 +148,14 @@ def assumptions(simulation: RunResult) -> Html:
 def _remarks(simulation: RunResult) -> Iterator[str]:
     early = max((values.size for values in simulation.prior.values()), default=0)
     of = "Before filtering: t" if simulation.filters_act else "T"
-    yield f"{of}he first {early:,} trials. ± is the standard error."
+    yield f"{of}he first {count_text(early)} trials. ± is the standard error."
     if simulation.plan.size:
         yield STRATIFIED
     if simulation.kept_inputs < simulation.accepted:
-        yield f"Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
+        yield (
+            f"Accepted: the first {count_text(simulation.kept_inputs)} of "
+            f"{count_text(simulation.accepted)} accepted trials."
+        )
 
 
 def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
@@ -188,7 +192,7 @@ def _name_line(assumption: Assumption, form: Form) -> Iterator[Html | str]:
 
 def _marginal(found: Marginal, when: str, form: Form) -> Iterator[Html]:
     yield element("td", when)
-    yield element("td", number(found.trials, f"{found.trials:,}"), class_="number")
+    yield element("td", number(found.trials, count_text(found.trials)), class_="number")
     yield element("td", estimate_html(found.mean, form.estimate), class_="number")
     yield element("td", estimate_html(found.standard_deviation, form.spread), class_="number")
     for estimate in found.percentiles.values():
@@ -252,4 +256,4 @@ def _value_text(value: Value) -> str:
         return NONE
     if isinstance(value, bool):
         return str(value).upper()
-    return printable(value) if isinstance(value, str) else number_text(value)
+    return printable(value) if isinstance(value, str) else whole_text(value)

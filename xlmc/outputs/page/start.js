@@ -6,7 +6,8 @@
   if (typeof read === "string") Later.text(read).then((text) => begin(JSON.parse(text)));
   else begin(read);
 
-  function begin({ z, forecasts, overlays }) {
+  function begin({ z, signs, forecasts, overlays }) {
+    Object.assign(SIGNS, signs);
     const places = [...document.querySelectorAll(".forecast")];
     const panels = [];
     const draw = (place) => panels.push(new Panel(place, forecasts[Number(place.dataset.forecast)], z));

@@ -17,6 +17,7 @@ from xlmc.errors import WorkbookError, XlmcError
 from xlmc.excel.workbook.lazy_sheets import naming_file
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.seal import read_seal
+from xlmc.montecarlo.definitions.number_styles import STYLES, in_style
 from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
 from xlmc.montecarlo.definitions.stopping import GOALS, AcceptedTrials
 from xlmc.montecarlo.loop.version import __version__
@@ -137,13 +138,22 @@ def replay(
     path = Path(path)
     if path.suffix.casefold() == SUFFIX or is_saved_run(path):
         run = open_run(path, python, functions)
-        return _replay(run.model.workbook, make_record(run), run.model, jobs, progress)
+        with in_style(run.settings.number_style):
+            return _replay(run.model.workbook, make_record(run), run.model, jobs, progress)
     with naming_file(str(path)):
         workbook = read_workbook(path)
         record = read_record(workbook)
         workbook = replace(workbook, functions=recorded_functions(record, functions, path))
         model = build_model(workbook, path, python=python) if python else None
-        return _replay(workbook, record, model, jobs, progress, path, _fed_by(record, path, books))
+        with in_style(_style_of(record)):  # of the texts that are compared
+            return _replay(workbook, record, model, jobs, progress, path, _fed_by(record, path, books))
+
+
+def _style_of(record: Record) -> str:
+    """Return the number style of a recorded run; empty where it has none of those that there are."""
+    entries = record.section("settings").entries if "settings" in record else ()
+    found = {entry.key: entry.value for entry in entries}.get("number_style")
+    return str(found) if found in STYLES else ""
 
 
 def _fed_by(record: Record, path: Path, books: Iterable[str | Path]) -> tuple[Feed, ...]:

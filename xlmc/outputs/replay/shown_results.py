@@ -13,6 +13,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import CellContent
 from xlmc.montecarlo.loop.stopping.stopped import Stopped
 from xlmc.montecarlo.loop.version import __version__
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.replay.changes import Closeness, is_number
 from xlmc.outputs.replay.sheets import CellDifference, SheetComparison, compare_sheets
 from xlmc.outputs.replay.versions import recorded_version
@@ -107,7 +108,7 @@ def _is_uncomputed(content: CellContent) -> bool:
 def _left_out_text(count: int, empty: list[Cell]) -> tuple[str, ...]:
     if not empty:
         return ()
-    cells = "1 cell that shows" if count == 1 else f"{count:,} cells that show"
+    cells = "1 cell that shows" if count == 1 else f"{count_text(count)} cells that show"
     return (f"{cells} results of the run: a program without the add-in saved them ({empty[0]})",)
 
 

@@ -8,6 +8,7 @@ from xlmc.analysis.results.record.errors_met import ErrorMet, errors_met
 from xlmc.analysis.results.statements.in_words import REJECTED_SENTENCE, discards_of, limits_text
 from xlmc.montecarlo.diagnostics.checking import checks_sentence
 from xlmc.montecarlo.statistics import proportion
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 
@@ -47,7 +48,7 @@ def write_accounting(page: Page, simulation: RunResult, last: int) -> None:
         page.heading("Trials rejected by the filters")
         _write_rejections(page, simulation)
         if simulation.rare is not None:
-            of = f"the first {simulation.trials:,} trials"
+            of = f"the first {count_text(simulation.trials)} trials"
             said = f"Counted among {of}, drawn before the search for accepted ones began."
             page.wide(said, "remark", last)
         if simulation.plan.size:
@@ -92,7 +93,8 @@ def _pair(simulation: RunResult, index: int, other: int) -> Shown:
 def _write_discards(page: Page, simulation: RunResult, last: int) -> None:
     page.heading("Filters for some forecasts only")
     said = (
-        f"These filters reject no trial. Of the {simulation.accepted:,} accepted trials, a forecast named here counts "
+        f"These filters reject no trial. Of the {count_text(simulation.accepted)} accepted trials, a "
+        "forecast named here counts "
         "those that its filters keep; all other forecasts count them all. A trial that two of its filters discard is "
         "counted for the first."
     )

@@ -16,6 +16,7 @@ from xlmc.analysis.results.record.definition_tables import correlations_met
 from xlmc.analysis.results.statements.in_words import distribution_text, status
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 from xlmc.outputs.filter_effect import DRAWN, FilterEffect, Marginal, filter_effect_of, shapes_of
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
@@ -31,7 +32,16 @@ if TYPE_CHECKING:
     from xlmc.outputs.sheets.curves_sheet import Curves, TableAt
     from xlmc.outputs.sheets.page import Page
 
-__all__ = ["HEADER", "MEANING", "MOVED", "NARROWED", "STRATIFIED", "WIDTHS", "write_assumptions", "write_correlations"]
+__all__ = [
+    "HEADER",
+    "MOVED",
+    "NARROWED",
+    "STRATIFIED",
+    "WIDTHS",
+    "meaning_text",
+    "write_assumptions",
+    "write_correlations",
+]
 
 HEADER = 3
 """The row of the headings, counted from 0."""
@@ -57,12 +67,6 @@ _HEADS = (
 
 MOVED, NARROWED = 0.5, 0.8
 
-MEANING = (
-    "Filters keep only the combinations in which they hold. So an assumption that they bear on is "
-    "distributed differently among the accepted trials, although its range is the same. "
-    f"Marked: a mean that moved by {MOVED:g} standard deviations or more; a standard deviation that shrank to "
-    f"{NARROWED:g} of what it was or less."
-)
 
 _CHANGE = (
     "The third line of each assumption has its change: how far the mean moved, in standard deviations of the draws "
@@ -81,11 +85,21 @@ _CORRELATIONS = (
 )
 
 
+def meaning_text() -> str:
+    """Say what filters do to assumptions, and what is marked."""
+    return (
+        "Filters keep only the combinations in which they hold. So an assumption that they bear on is distributed "
+        "differently among the accepted trials, although its range is the same. Marked: a mean that moved by "
+        f"{number_text(MOVED)} standard deviations or more; a standard deviation that shrank to "
+        f"{number_text(NARROWED)} of what it was or less."
+    )
+
+
 def write_assumptions(page: Page, book: Workbook, simulation: RunResult, curves: Curves) -> None:
     """Write the sheet; `curves` takes the numbers that its small charts draw."""
     name = simulation.model.workbook.name
-    of = f" of {simulation.trials:,}" if simulation.rare is None else ""
-    page.title("Assumptions", f"{name}: {simulation.accepted:,}{of} trials accepted")
+    of = f" of {count_text(simulation.trials)}" if simulation.rare is None else ""
+    page.title("Assumptions", f"{name}: {count_text(simulation.accepted)}{of} trials accepted")
     page.sheet.set_row(page.row, _GAP)
     page.row = HEADER
     page.height = _ROW
@@ -101,15 +115,18 @@ def write_assumptions(page: Page, book: Workbook, simulation: RunResult, curves:
     write_correlations(page, simulation)
     page.heading("What this shows")
     if simulation.filters_act:
-        page.wide(MEANING, "paragraph", _READABLE)
+        page.wide(meaning_text(), "paragraph", _READABLE)
         page.wide(_CHANGE, "paragraph", _READABLE)
     early = max((values.size for values in simulation.prior.values()), default=0)
     of = "Before filtering: t" if simulation.filters_act else "T"
-    page.wide(f"{of}he first {early:,} trials. ± is the standard error.", "paragraph", _READABLE)
+    page.wide(f"{of}he first {count_text(early)} trials. ± is the standard error.", "paragraph", _READABLE)
     if simulation.plan.size:
         page.wide(STRATIFIED, "paragraph", _READABLE)
     if simulation.kept_inputs < simulation.accepted:
-        kept = f"Accepted: the first {simulation.kept_inputs:,} of {simulation.accepted:,} accepted trials."
+        kept = (
+            f"Accepted: the first {count_text(simulation.kept_inputs)} of "
+            f"{count_text(simulation.accepted)} accepted trials."
+        )
         page.wide(kept, "paragraph", _READABLE)
     page.set_up_printing(name, repeat=HEADER)
 

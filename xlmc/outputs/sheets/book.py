@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.studies.sensitivity import Sensitivities, sensitivities
+from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.outputs.case_fields import case_of
 from xlmc.outputs.histogram import Figure, figures_of
 from xlmc.outputs.sheets import (
@@ -194,6 +195,7 @@ SHEETS: Final[tuple[ResultSheet, ...]] = (
 """The sheets in the order of their tabs."""
 
 
+@in_style_of("settings.number_style")
 def build_sheets(
     simulation: RunResult,
     *,

@@ -11,13 +11,19 @@ import math
 import re
 from dataclasses import dataclass, replace
 
-from xlmc.analysis.results.statements.in_words import number_text
+from xlmc.analysis.results.statements.in_words import plain_text
 from xlmc.excel.functions.number_format import FormatError, parse_format
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import decimals_of, exact_text, fixed_text, two_digit_exponent
-from xlmc.montecarlo.statistics.number_text import number_text as plain_text
+from xlmc.montecarlo.statistics.number_text import (
+    decimals_of,
+    exact_text,
+    fixed_text,
+    number_text,
+    styled_text,
+    two_digit_exponent,
+)
 
 __all__ = [
     "AT_LEAST",
@@ -266,7 +272,7 @@ def shown_text(shown: Shown) -> str:
 
 
 def _general(value: float) -> str:
-    return exact_text(value) if len(number_text(value)) <= _LONGEST else plain_text(value, 9)
+    return exact_text(value) if len(plain_text(value)) <= _LONGEST else number_text(value, 9)
 
 
 def _format_number(value: float, number_format: str, date1904: bool = False) -> str:
@@ -279,10 +285,12 @@ def _format_number(value: float, number_format: str, date1904: bool = False) -> 
         return _text_in_form(value, number_format, date1904)
     decimals, ending = len(found["decimals"] or ""), found["ending"]
     if ending == "E+00":
-        return f"{value:.{decimals}e}"
+        return styled_text(value, f".{decimals}e")
     if ending == "%":
         return f"{fixed_text(100.0 * value, decimals)} %"
-    return fixed_text(value, decimals) if found["grouped"] else f"{round(value, decimals) + 0.0:.{decimals}f}"
+    return (
+        fixed_text(value, decimals) if found["grouped"] else styled_text(round(value, decimals) + 0.0, f".{decimals}f")
+    )
 
 
 def _text_in_form(value: float, number_format: str, date1904: bool) -> str:

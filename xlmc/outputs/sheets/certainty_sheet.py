@@ -17,6 +17,7 @@ import numpy as np
 from xlmc.analysis.results.statements import certainties, meaning, stated_range, statements
 from xlmc.montecarlo.definitions.stating import NOT_ROUNDED
 from xlmc.montecarlo.statistics import proportion
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.summary import shares_of
@@ -46,7 +47,7 @@ _Z = "1.96"
 def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None:
     """Write the sheet; `trials` is where the trials stand that its formulas count."""
     name = simulation.model.workbook.name
-    page.title("Certainty", f"{name}: {simulation.accepted:,} accepted trials")
+    page.title("Certainty", f"{name}: {count_text(simulation.accepted)} accepted trials")
     if said := statements(simulation):
         page.heading("In words")
         for statement in said:
@@ -113,9 +114,11 @@ def _write_own_ranges(page: Page, simulation: RunResult, trials: TrialsAt) -> No
 
 
 def _instructions(simulation: RunResult, trials: TrialsAt) -> str:
-    which = f"all {trials.shown:,} accepted trials"
+    which = f"all {count_text(trials.shown)} accepted trials"
     if trials.shown < simulation.accepted:
-        which = f"the first {trials.shown:,} of {simulation.accepted:,} accepted trials, which stand"
+        which = (
+            f"the first {count_text(trials.shown)} of {count_text(simulation.accepted)} accepted trials, which stand"
+        )
     else:
         which += ", which stand"
     said = f"Type the ends of a range into the yellow cells; an empty cell means no limit. Formulas count {which} on "

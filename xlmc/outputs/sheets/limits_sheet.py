@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.statements.in_words import number_text
+from xlmc.analysis.results.statements.in_words import given_text
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.sensitivity_charts import (
@@ -78,7 +79,8 @@ def limit_sentences(found: Sensitivities) -> list[str]:
         said.append(f"Not moved, because the limit varies with the assumptions: {', '.join(found.varying_limits)}.")
     if found.omitted_limits:
         said.append(
-            f"{found.omitted_limits:,} further limits were left out: the last of very many, or all of them where "
+            f"{count_text(found.omitted_limits)} further limits were left out: the last of very many, "
+            "or all of them where "
             "accepted trials are rare, because trials near a limit are then not among those drawn before the search."
         )
     return said
@@ -88,7 +90,7 @@ def _write_limit(
     page: Page, book: Workbook, limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]
 ) -> list[Captioned]:
     """Write a limit's tables, and the chart of the shares above them; that of the changes is returned, for the top."""
-    page.heading(f"{limit.filter}: {limit.relation} {number_text(limit.limit)} ({limit.cell})")
+    page.heading(f"{limit.filter}: {limit.relation} {given_text(limit.limit)} ({limit.cell})")
     if not limit.points:
         page.wide("The accepted trials do not say by how much it could be moved.", "paragraph", _LAST)
         return []
@@ -208,7 +210,7 @@ def _share_axis(limit: FilterLimit) -> dict[str, float]:
 def moved_caption(limit: FilterLimit) -> str:
     """Return the caption of the chart of the changes."""
     return (
-        f"How far each forecast's mean moves from that with the limit as it is ({number_text(limit.limit)}); whiskers "
+        f"How far each forecast's mean moves from that with the limit as it is ({given_text(limit.limit)}); whiskers "
         f"are standard errors of the change. Other filters and limits stay.{_nothing_moves(limit)}"
     )
 
@@ -222,6 +224,7 @@ def _nothing_moves(limit: FilterLimit) -> str:
 
 def _share_caption(limit: FilterLimit) -> str:
     return (
-        f"The share of all trials that are accepted with each limit, from {limit.trials:,} trials; what a looser limit "
-        f"adds comes from {limit.loosened_trials:,}."
+        f"The share of all trials that are accepted with each limit, from {count_text(limit.trials)} "
+        "trials; what a looser limit "
+        f"adds comes from {count_text(limit.loosened_trials)}."
     )

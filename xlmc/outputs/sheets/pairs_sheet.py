@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from xlmc.analysis.results.statements import PAIRS, Pair, pairs_of
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import BLANK, Shown
 from xlmc.outputs.sheets.charts_sheet import Drawing, place_drawings
@@ -53,7 +54,7 @@ class _Points:
 def write_pairs(page: Page, book: Workbook, simulation: RunResult, curves: Curves, trials: TrialsAt) -> None:
     """Write the sheet; its charts draw the trials where `trials` says, or points that `curves` takes."""
     name = simulation.model.workbook.name
-    page.title("Forecasts two at a time", f"{name}: {simulation.accepted:,} accepted trials")
+    page.title("Forecasts two at a time", f"{name}: {count_text(simulation.accepted)} accepted trials")
     pairs = pairs_of(simulation)
     if not pairs:
         page.row += 1
@@ -105,9 +106,13 @@ def pair_sentences(simulation: RunResult, pairs: Sequence[Pair]) -> list[str]:
     said = "A limit is the forecast's threshold or, if it has none, its median; it is used as the number printed here."
     said += " A yes/no answer lies above its limit where it is a yes."
     said += " Probabilities are shares of the accepted trials in which both forecasts are numbers"
-    said += f" ({min(trials):,})." if len(trials) == 1 else f" ({min(trials):,} to {max(trials):,})."
+    said += (
+        f" ({count_text(min(trials))})."
+        if len(trials) == 1
+        else f" ({count_text(min(trials))} to {count_text(max(trials))})."
+    )
     if max(ranked) < max(trials):
-        said += f" Rank correlations come from the first {max(ranked):,} of them."
+        said += f" Rank correlations come from the first {count_text(max(ranked))} of them."
     said += " A > B is given where both have the same units."
     found = [said]
     if len(pairs) == PAIRS and len(simulation.model.forecasts) > _FORECASTS:
@@ -127,7 +132,7 @@ def _drawings(
     found = {each.name: _points(curves, simulation, trials, each, known) for each in forecasts}
     titles = [f"{pair.first.name} and {pair.second.name}" for pair in pairs]
     titled = curves.write(["Titles of the scatter charts"], "", ["Title"], [[Shown(each)] for each in titles], 60)
-    points = f"the first {known.size:,} accepted trials in which all of these forecasts are numbers"
+    points = f"the first {count_text(known.size)} accepted trials in which all of these forecasts are numbers"
     return [
         Drawing(
             _scatter(book, found[pair.first.name], found[pair.second.name], titled, index),

@@ -9,6 +9,7 @@ from xlmc.analysis.results.record.errors_met import lost_sentences
 from xlmc.analysis.results.statements.in_words import sampling_sentence
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.statistics import Estimate, proportion
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.accounting import write_accounting, write_checks
 from xlmc.outputs.sheets.cells import Shown
@@ -30,7 +31,7 @@ def write_results(page: Page, simulation: RunResult) -> None:
     book = simulation.model.workbook.name
     settings = simulation.settings
     page.height = _ROW
-    page.title("Results of the simulation", f"{book}, seed {settings.seed}, {simulation.evaluated:,} trials")
+    page.title("Results of the simulation", f"{book}, seed {settings.seed}, {count_text(simulation.evaluated)} trials")
     for sentence in opening_sentences(simulation):
         page.wide(sentence, "warning", LAST)
     _write_answers(page, simulation)

@@ -14,6 +14,7 @@ from xlmc.analysis.studies.scenario_answers import (
 )
 from xlmc.montecarlo.simulation.simulation import FEW
 from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import BLANK, Shown
 from xlmc.outputs.summary import percent
@@ -95,7 +96,7 @@ def scenario_warnings(found: Sequence[ScenarioAnswers]) -> list[str]:
 
 def scenario_sentences(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
     """Yield the sentences that say what the differences and their errors are."""
-    few = [f"{each.name!r} ({each.run.accepted:,})" for each in found if 0 < each.run.accepted < FEW]
+    few = [f"{each.name!r} ({count_text(each.run.accepted)})" for each in found if 0 < each.run.accepted < FEW]
     if few:
         yield f"Few trials were accepted: {', '.join(few)}. Errors of means and differences can be too small there."
     yield from _different_wishes(found)

@@ -14,6 +14,7 @@ from xlmc.analysis.studies.sensitivity.influences import MEASURED
 from xlmc.analysis.studies.sensitivity.measures import Noise, noise
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.sensitivity_charts import (
@@ -106,7 +107,9 @@ def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, source: 
 
     The charts draw the tables that stand below them, so room is left for them.
     """
-    page.title("Sensitivity: what the answers depend on", f"{source.name}: {found.accepted:,} accepted trials")
+    page.title(
+        "Sensitivity: what the answers depend on", f"{source.name}: {count_text(found.accepted)} accepted trials"
+    )
     bent = f" {_BENT}" if any(map(_is_bent, found.forecasts)) else ""
     printed_only = _printed_sentence(len(found.forecasts))
     for sentence in (*sensitivity_sentences(found, source), _EXPLAINED_CHART, f"{_TORNADO_CHART}{bent}", printed_only):
@@ -156,8 +159,10 @@ def sensitivity_sentences(found: Sensitivities, source: SourceBook) -> list[str]
         said.append(f"{found.sobol_reason}.")
     if found.examined < found.accepted:
         said.append(
-            f"Influences rest on {found.examined:,} of the {found.accepted:,} accepted trials; the variance explained, "
-            "where the forecast jumps or bends, on up to 131,072."
+            f"Influences rest on {count_text(found.examined)} of the {count_text(found.accepted)} "
+            "accepted trials; the variance explained, "
+            "where the forecast jumps or bends, on up to "
+            f"{count_text(131_072)}."
         )
     if any(each.explained_at_least for forecast in found.forecasts for each in forecast.influences):
         said.append(
@@ -167,7 +172,7 @@ def sensitivity_sentences(found: Sensitivities, source: SourceBook) -> list[str]
     if omitted := max((each.omitted for each in found.forecasts), default=0):
         said.append(
             f"For each forecast those {MEASURED} assumptions are measured that matter most in a first look at all; the "
-            f"other {omitted:,} have less influence."
+            f"other {count_text(omitted)} have less influence."
         )
     if found.omitted_forecasts:
         said.append(first_forecasts("Sensitivity is told of", len(found.forecasts), found.omitted_forecasts))
@@ -231,14 +236,15 @@ def _is_bent(found: ForecastSensitivity) -> bool:
 
 def _nothing(forecast: ForecastSensitivity) -> str:
     return (
-        f"It is a number in {forecast.trials:,} accepted trials: too few to say what influences it, or it is the same "
+        f"It is a number in {count_text(forecast.trials)} accepted trials: too few to say what "
+        "influences it, or it is the same "
         "in all of them, or the draws of the accepted trials were not kept."
     )
 
 
 def _write_rest(page: Page, count: int) -> None:
     if count > ROWS:
-        page.wide(f"and {count - ROWS:,} more that explain less.", "remark", _LAST)
+        page.wide(f"and {count_text(count - ROWS)} more that explain less.", "remark", _LAST)
 
 
 def write_influences(page: Page, found: ForecastSensitivity, sobol: bool) -> TableAt:
@@ -318,12 +324,13 @@ def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
         "only widens the forecast or acts only together with others; it is not a share of the variance."
     )
     total = (
-        f"Total effect (Sobol), from {pairs:,} pairs of trials of their own: the variance that would be left, on "
+        f"Total effect (Sobol), from {count_text(pairs)} pairs of trials of their own: the variance "
+        "that would be left, on "
         "average, if all other assumptions were known. It counts what the assumption does together with others, so the "
         "effects add up to 100 % or more. (Sobol's total index; first order is the part that it explains alone.)"
     )
     rank = (
-        f"Rank correlation on {found.trials:,} accepted trials: whether the forecast rises or falls with the "
+        f"Rank correlation on {count_text(found.trials)} accepted trials: whether the forecast rises or falls with the "
         "assumption. It does not show effects that rise and fall, and it is not a share of the variance."
     )
     contribution = (

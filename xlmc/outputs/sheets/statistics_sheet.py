@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import NOT_ROUNDED, Kind
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.summary import error_sentence, percent
@@ -41,7 +42,7 @@ _RIGHT = 7
 def write_statistics(page: Page, simulation: RunResult) -> None:
     """Write the sheet: forecasts side by side, their statistics and below these their percentiles."""
     name = simulation.model.workbook.name
-    below = f"{name}: {simulation.accepted:,} accepted trials. From … to: the 95 % interval of each number"
+    below = f"{name}: {count_text(simulation.accepted)} accepted trials. From … to: the 95 % interval of each number"
     page.height = _ROW
     page.title("Statistics of the accepted trials", below)
     results = list(simulation.results.values())
@@ -161,7 +162,7 @@ def _percentiles(result: ForecastResult) -> list[list[Shown]]:
     if result.kind in NOT_ROUNDED:
         return []
     return [
-        [Shown(f"{percentile:g} %"), *_with_interval(each, found.mean, result.form)]
+        [Shown(f"{number_text(percentile)} %"), *_with_interval(each, found.mean, result.form)]
         for percentile, each in found.percentiles.items()
     ]
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.simulation.simulation import weight_heading
+from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.styles import Reference
@@ -87,8 +88,12 @@ def write_trials(page: Page, simulation: RunResult, rows: int = TRIAL_ROWS) -> T
 
 def _count_line(shown: int, accepted: int) -> Shown:
     if shown == accepted:
-        return Shown(f"All {accepted:,} accepted trials." if accepted else "No trial was accepted.", look="subtitle")
-    return Shown(f"Only the first {shown:,} of {accepted:,} accepted trials stand here.", look="alarm")
+        return Shown(
+            f"All {count_text(accepted)} accepted trials." if accepted else "No trial was accepted.", look="subtitle"
+        )
+    return Shown(
+        f"Only the first {count_text(shown)} of {count_text(accepted)} accepted trials stand here.", look="alarm"
+    )
 
 
 def _columns(simulation: RunResult, shown: int) -> list[tuple[Shown, NDArray[np.float64]]]:

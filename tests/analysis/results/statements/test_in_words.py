@@ -8,8 +8,8 @@ from xlmc.analysis.results.statements.in_words import (
     distribution_text,
     limits_text,
     notes_text,
-    number_text,
     parameters_text,
+    plain_text,
     status,
 )
 from xlmc.excel.address import Area, Cell
@@ -73,8 +73,8 @@ def test_parameters_stand_in_the_familys_order():
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_numbers_read_back_as_themselves(number):
-    assert float(number_text(number)) == number
-    assert not number_text(number).endswith(".0")
+    assert float(plain_text(number)) == number
+    assert not plain_text(number).endswith(".0")
 
 
 def test_notes():

@@ -9,7 +9,13 @@ NAME, VALUE = "Answers!A31", "Answers!B31"
 
 MISTAKES = [
     ("Trails", 100, NAME, "There is no setting 'Trails'", "Did you mean Trials?"),
-    ("Colour", "red", NAME, "There is no setting 'Colour'", "Engine, Lognorm, Evidence, Detailed forecasts, Range %"),
+    (
+        "Colour",
+        "red",
+        NAME,
+        "There is no setting 'Colour'",
+        "Engine, Lognorm, Evidence, Detailed forecasts, Number style, Range %",
+    ),
     (None, 5, NAME, "Setting is blank", "Fill in Setting"),
     ("Seed", 5, "Answers!A32", "Seed is set twice", "Keep one of the two rows"),
     ("Trials", None, VALUE, "Trials has no value", "or delete the row"),

@@ -12,6 +12,7 @@ from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell, host_of
 from xlmc.montecarlo.diagnostics.cell_errors import Root
 from xlmc.montecarlo.model.solving import fault_text
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -92,7 +93,10 @@ def _lost(simulation: RunResult, met: ErrorMet) -> str:
     accepted = met.kind == "forecast" and bool(simulation.model.filters)
     of = simulation.accepted if met.kind == "forecast" else simulation.trials
     share = float(f"{100 * met.trials / max(of, 1):.2g}")
-    sentence = f"{met.what} in {met.trials:,} of {of:,} {'accepted ' * accepted}trials ({share:g} %)"
+    sentence = (
+        f"{met.what} in {count_text(met.trials)} of {count_text(of)} "
+        f"{'accepted ' * accepted}trials ({number_text(share)} %)"
+    )
     if met.root is None:
         why = fault_text(simulation.model.definitions.solves, met.cell, _code(met.error))
         return f"{sentence}: {why}" if why else sentence
@@ -111,14 +115,16 @@ def rest_sentences(simulation: RunResult) -> list[str]:
     counts: dict[int, list[str]] = {}
     for name, result in simulation.results.items():
         counts.setdefault(int(result.values.size), []).append(name)
-    of = f"{simulation.trials:,}" if simulation.rare is None else f"{simulation.accepted:,} accepted"
+    of = count_text(simulation.trials) if simulation.rare is None else f"{count_text(simulation.accepted)} accepted"
     if not counts:
         return []
     most = max(counts, key=lambda count: len(counts[count]))
     if len(counts) > 1 and len(counts[most]) == 1:
-        return [f"Statistics of {names[0]!r} rest on {count:,} of {of} trials" for count, names in counts.items()]
-    others = [f"those of {_listed(names)} on {count:,}" for count, names in counts.items() if count != most]
-    return ["; ".join([f"Statistics rest on {most:,} of {of} trials", *others])]
+        return [
+            f"Statistics of {names[0]!r} rest on {count_text(count)} of {of} trials" for count, names in counts.items()
+        ]
+    others = [f"those of {_listed(names)} on {count_text(count)}" for count, names in counts.items() if count != most]
+    return ["; ".join([f"Statistics rest on {count_text(most)} of {of} trials", *others])]
 
 
 def _listed(names: list[str]) -> str:

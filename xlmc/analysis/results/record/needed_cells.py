@@ -18,7 +18,7 @@ from collections.abc import Collection, Container, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record.record_parts import EDITED, Entry, Record, RecordTable, Section
-from xlmc.analysis.results.statements.in_words import number_text
+from xlmc.analysis.results.statements.in_words import plain_text
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.address import Area, Cell, host_of, parse_address, quote_sheet
 from xlmc.excel.formula.shape import text_at
@@ -120,7 +120,7 @@ def value_text(value: CellValue) -> str:
             doubled = value.replace('"', '""')
             return f'"{doubled}"'
         case _:
-            return number_text(value)
+            return plain_text(value)
 
 
 def _formula_text(formula: Formula, cell: Cell) -> str:

@@ -30,7 +30,7 @@ from xlmc.montecarlo.definitions.tables.table_rows import as_text
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.sampling.sampling_methods import GENERATOR, METHODS
 from xlmc.montecarlo.statistics import Estimate, proportion
-from xlmc.montecarlo.statistics.number_text import count_text, exact_text
+from xlmc.montecarlo.statistics.number_text import count_text, exact_text, styled_text
 from xlmc.montecarlo.statistics.sample import MOST_GROUPS
 
 if TYPE_CHECKING:
@@ -52,8 +52,8 @@ __all__ = [
     "limits_text",
     "method_text",
     "notes_text",
-    "number_text",
     "parameters_text",
+    "plain_text",
     "sampling_sentence",
     "status",
 ]
@@ -72,7 +72,7 @@ REJECTED_SENTENCE: Final = (
 """The note where shares are shown whose errors are not computed from the replicates."""
 
 
-def number_text(value: Parameter) -> str:
+def plain_text(value: Parameter) -> str:
     """Return the shortest text that reads back as the same number: `0.95`, `6661`; or the cell that holds it."""
     return str(value) if isinstance(value, Cell) else repr(float(value)).removesuffix(".0")
 
@@ -95,7 +95,7 @@ def parameters_text(assumption: Assumption) -> str:
 
 def _data_text(data: DataRange) -> str:
     weights = ", cumulative weights" * data.cumulative
-    bandwidth = "" if data.bandwidth is None else f", Bandwidth {number_text(data.bandwidth)}"
+    bandwidth = "" if data.bandwidth is None else f", Bandwidth {given_text(data.bandwidth)}"
     return f"Data {data.text or data.area}{weights}{bandwidth}"
 
 
@@ -164,7 +164,7 @@ def evidence_text(evidence: Evidence) -> str:
     ends_text = ""
     if isinstance(known, Within):
         ends = [("from", known.low), ("to", known.high)]
-        ends_text = ": " + " ".join(f"{word} {end:.6g}" for word, end in ends if end is not None)
+        ends_text = ": " + " ".join(f"{word} {styled_text(end, '.6g')}" for word, end in ends if end is not None)
     given, weights = f" ({sizes})" if sizes else "", ", as weights" if evidence.weighed else ""
     return f"reads {given_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{ends_text}{weights}"
 
@@ -207,7 +207,7 @@ def _change_text(change: Change) -> str:
 
 
 def _plain_number(value: float | None) -> str:
-    return "" if value is None else number_text(value)
+    return "" if value is None else given_text(value)
 
 
 def notes_text(notes: Mapping[str, str]) -> str:

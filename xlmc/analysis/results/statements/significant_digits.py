@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate, probability_between
-from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, is_far, number_text
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, is_far, number_text, styled_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.statistics import Sample
@@ -221,7 +221,8 @@ def reach_text(share: Estimate) -> str:
     if not reach:
         return ""
     reach = reach.quantize(Decimal(1).scaleb(reach.adjusted() - 1), ROUND_CEILING)
-    return f"at most {reach:f} %" if share.value == 0.0 else f"at least {100 - reach:f} %"
+    of_none = share.value == 0.0
+    return f"{'at most' if of_none else 'at least'} {styled_text(reach if of_none else 100 - reach, 'f')} %"
 
 
 def _unit(ends: Sequence[Estimate], resolution: float | None) -> Decimal | None:
@@ -259,6 +260,6 @@ def _round(value: float, unit: Decimal | None, rounding: str, significant: int =
 
 def _text(value: Decimal, form: Form) -> str:
     if form.kind is not Kind.DATE and is_far(form.factor * float(value)):
-        return f"{value:.{len(value.as_tuple().digits) - 1}e}"
+        return styled_text(value, f".{len(value.as_tuple().digits) - 1}e")
     exponent = value.as_tuple().exponent
     return form.tick(float(value), -exponent if isinstance(exponent, int) else 0)

@@ -22,11 +22,11 @@ from xlmc.analysis.results.statements.in_words import distribution_text
 from xlmc.analysis.studies.comparison.variations import with_changes
 from xlmc.montecarlo.definitions.definitions import Assumption, Filter
 from xlmc.montecarlo.definitions.units import factor_between
-from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_limits
 from xlmc.montecarlo.simulation.simulation import RunResult
+from xlmc.montecarlo.statistics.number_text import exact_text
 
 __all__ = ["Inputs", "Step", "Unlike", "Variations", "cause_of", "inputs_of", "steps_between"]
 
@@ -115,7 +115,7 @@ def _unlike(first: Assumption, second: Assumption) -> Unlike:
 
 def _words(assumption: Assumption) -> str:
     base = assumption.base if assumption.frozen else None
-    what = distribution_text(assumption) if base is None else f"held at {show(base)}"
+    what = distribution_text(assumption) if base is None else f"held at {exact_text(base)}"
     return f"{what} {assumption.units}".rstrip()
 
 

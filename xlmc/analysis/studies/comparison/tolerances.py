@@ -14,6 +14,7 @@ from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.units import factor_between
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = [
     "Judgement",
@@ -130,7 +131,7 @@ def chance_of(points: float | None) -> float | None:
     if points is None:
         return None
     if not 0.0 < points < 100.0:
-        message = f"the tolerance of P(> threshold) is {points:g} percentage points"
+        message = f"the tolerance of P(> threshold) is {number_text(points)} percentage points"
         raise SimulationError(message, hint="give a number above 0 and below 100, such as 1")
     return points / 100.0
 

@@ -16,6 +16,7 @@ from xlmc.analysis.studies.comparison.tolerances import Judgement, Verdict
 from xlmc.montecarlo.definitions.forms import Form, span_text
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate, format_estimate
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text
 
 __all__ = [
     "amount",
@@ -74,7 +75,7 @@ def _only_as_a_whole(each: ForecastComparison) -> str:
     """Two answers with one distribution that are not one number, as 10 + z and 10 − z."""
     found, units = each.difference, f" {each.first.units}" if each.first.units else ""
     if found.shares:
-        told = f"give another answer in {100 * found.typical**2:.2g} % of the trials that both accept"
+        told = f"give another answer in {number_text(100 * found.typical**2, 2)} % of the trials that both accept"
     else:
         typical, largest = (f"{tolerance_text(one, found.form)}{units}" for one in (found.typical, found.largest))
         told = f"give numbers that differ by {typical} (root mean square), {largest} at most"
@@ -124,7 +125,7 @@ def _rival(each: ForecastComparison, found: Rivalry, books: tuple[str, str]) -> 
         books = (repr(each.first.name), repr(each.second.name))
     spreads = (found.deviation, found.width)
     deviations, widths = (_spreads(spread, each.difference.form, each.first.units) for spread in spreads)
-    share = f"{100 * each.difference.share:.3g} % range"
+    share = f"{number_text(100 * each.difference.share, 3)} % range"
     if found.sharper is not None:
         mine, theirs = found.sharper, 1 - found.sharper
         name, sizes = (share, widths) if found.by_range else ("standard deviation", deviations)
@@ -153,8 +154,8 @@ _AGREE = {
 
 def _chance_text(found: Rivalry) -> str:
     if not found.chance:
-        return f"in all {found.both:,} trials that both accept they differ in one direction"
-    return f"a difference as far from 0 as theirs, or farther, has a chance of {100 * found.chance:.2g} %"
+        return f"in all {count_text(found.both)} trials that both accept they differ in one direction"
+    return f"a difference as far from 0 as theirs, or farther, has a chance of {number_text(100 * found.chance, 2)} %"
 
 
 _WHY = {
@@ -192,7 +193,7 @@ def _because(cause: Cause, each: ForecastComparison, books: tuple[str, str]) -> 
 def _trial_by_trial(each: ForecastComparison, both: int) -> str:
     if each.same_in_every_trial:
         what = "answer" if each.difference.shares else "number"
-        same = f"In each of the {both:,} trials that both accept they give the same {what}"
+        same = f"In each of the {count_text(both)} trials that both accept they give the same {what}"
         return f" {same}: they differ only in which trials they accept."
     return ""
 
@@ -200,7 +201,7 @@ def _trial_by_trial(each: ForecastComparison, both: int) -> str:
 def _undecided_text(comparison: Comparison) -> Iterator[str]:
     for each in comparison.of(Verdict.UNDECIDED):
         change = dict(each.difference.changes)[each.judgement.largest]
-        start = f"Undecided for {_name(each)} at {comparison.first.trials:,} trials"
+        start = f"Undecided for {_name(each)} at {count_text(comparison.first.trials)} trials"
         if math.isnan(change.difference.value) or change.difference.error is None:
             yield f"{start}: {_too_few(comparison, each)}."
             continue
@@ -220,7 +221,7 @@ def _too_few(comparison: Comparison, each: ForecastComparison) -> str:
         numbers = int(np.count_nonzero(~np.isnan(run.forecasts[name])))
         if numbers < run.accepted and numbers < _ENOUGH:
             count = "none" if not numbers else f"only {numbers}"
-            return f"it is a number in {count} of the {run.accepted:,} trials that {book} accepts"
+            return f"it is a number in {count} of the {count_text(run.accepted)} trials that {book} accepts"
     return "too few of them are accepted"
 
 
@@ -239,7 +240,7 @@ def _more(judgement: Judgement, comparison: Comparison) -> str:
 def _two_digits(trials: float) -> str:
     """Round up, for the number is a guess: 10,423,263 -> 11,000,000."""
     step = math.pow(10.0, max(0, math.floor(math.log10(trials)) - 1))
-    return f"{math.ceil(trials / step) * step:,.0f}"
+    return fixed_text(math.ceil(trials / step) * step, 0)
 
 
 def inputs_text(comparison: Comparison) -> list[str]:
@@ -295,7 +296,7 @@ def is_chance(number: str) -> bool:
 
 def points(share: float) -> str:
     """Write a difference of probabilities: `1.2 points`."""
-    return f"{100 * share:.3g} point{'s' * (share != 0.01)}"
+    return f"{number_text(100 * share, 3)} point{'s' * (share != 0.01)}"
 
 
 def tolerance_text(value: float, form: Form) -> str:

@@ -19,6 +19,7 @@ from xlmc.analysis.studies.fitting.skewed_forms import SKEWED_FORMS
 from xlmc.analysis.studies.fitting.solved_forms import SOLVED_FORMS, TRIANGULAR
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.distributions import FAMILIES
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = [
     "CRITERIA",
@@ -162,7 +163,9 @@ def _refuse_hopeless(x: Floats) -> None:
     if not np.isfinite(x).all():
         raise SimulationError("a value is not a finite number", hint="Correct it, or leave it out")
     if max(-x[0], x[-1]) > _LARGEST:
-        raise SimulationError(f"a value is beyond {_LARGEST:g}: too large to fit", hint="Give them in a larger unit")
+        raise SimulationError(
+            f"a value is beyond {number_text(_LARGEST)}: too large to fit", hint="Give them in a larger unit"
+        )
     if x[0] == x[-1]:
         hint = "Equal measurements say nothing of the spread: choose Low and High from what the measurement resolves"
         raise SimulationError(f"all {x.size} values are equal", hint=hint)
@@ -215,7 +218,7 @@ def _judge_fit(
 def _errors(candidate: Candidate, params: Params, x: Floats, costly: bool) -> tuple[Errors, str]:
     if candidate.errors is not None:
         if candidate.costly and not costly:
-            return (None,) * len(params), f"not worked out: AIC more than {_IN_THE_RACE:g} above the best"
+            return (None,) * len(params), f"not worked out: AIC more than {number_text(_IN_THE_RACE)} above the best"
         return candidate.errors(x, params), candidate.errors_from
     free = [index for index, heading in enumerate(candidate.headings) if heading not in candidate.fixed]
     return standard_errors(lambda moved: candidate.log_likelihood(x, moved), params, free), candidate.errors_from
@@ -274,7 +277,7 @@ def cautions(n: int, rivals: list[str]) -> tuple[str, ...]:
         )
     if len(rivals) > 1:
         sentences.append(
-            f"{_join_names(rivals)} describe the values about equally well: their AIC lie within {_CLOSE:g}"
+            f"{_join_names(rivals)} describe the values about equally well: their AIC lie within {number_text(_CLOSE)}"
         )
     return tuple(sentences)
 

@@ -13,6 +13,7 @@ from xlmc.montecarlo import statistics
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.statistics import Sample
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text, styled_text
 
 __all__ = [
     "STATISTICS",
@@ -178,12 +179,12 @@ def percent_words(share: float) -> str:
     >>> percent_words(0.0175)
     '1.75 %'
     """
-    return f"{100.0 * share:.3g} %" if abs(share) < 10.0 else f"{100.0 * share:,.0f} %"
+    return f"{number_text(100.0 * share, 3)} %" if abs(share) < 10.0 else f"{fixed_text(100.0 * share, 0)} %"
 
 
 def rounded_text(value: float) -> str:
     """Two significant digits."""
-    return f"{float(f'{value:.2g}'):g}" if 0.001 <= abs(value) < 1e4 or value == 0.0 else f"{value:.1e}"
+    return number_text(value, 2) if 0.001 <= abs(value) < 1e4 or value == 0.0 else styled_text(value, ".1e")
 
 
 def trials_text(trials: float) -> str:
@@ -195,7 +196,7 @@ def trials_text(trials: float) -> str:
     if not np.isfinite(trials):
         return "infinitely many"
     size = 10 ** max(len(f"{trials:.0f}") - 2, 0)
-    return f"{round(trials / size) * size:,}"
+    return count_text(round(trials / size) * size)
 
 
 def seconds_text(seconds: float) -> str:
@@ -208,5 +209,5 @@ def seconds_text(seconds: float) -> str:
         return "–"
     for length, name, top in ((1.0, "s", 120.0), (60.0, "min", 7_200.0), (3_600.0, "h", 172_800.0)):
         if seconds < top:
-            return f"{float(f'{seconds / length:.2g}'):g} {name}"
-    return f"{float(f'{seconds / 86_400.0:.2g}'):,g} days"
+            return f"{number_text(float(f'{seconds / length:.2g}'))} {name}"
+    return f"{number_text(float(f'{seconds / 86_400.0:.2g}'))} days"

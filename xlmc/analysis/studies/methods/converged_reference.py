@@ -23,6 +23,7 @@ from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate, Sample
 from xlmc.montecarlo.statistics.heavy_tails import heavy_tail
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["Reference", "fastest_engine", "reference_of", "reference_size", "unfiltered_of"]
 
@@ -143,7 +144,8 @@ def reference_of(model: CompiledModel, trials: int, sampling: str, engine: str, 
     run = simulate(model, trials=trials, seed=seed, sampling=sampling, engine=engine, keep_inputs=_WATCHED)
     if run.accepted < 100:
         message = (
-            f"the filters accept {run.accepted} of {run.trials:,} reference trials, too few to measure methods with"
+            f"the filters accept {run.accepted} of {count_text(run.trials)} reference trials, "
+            "too few to measure methods with"
         )
         raise SimulationError(
             message, hint="give more reference trials, or see whether the filters contradict the inputs"

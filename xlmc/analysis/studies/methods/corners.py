@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.methods.answer import Answer, Errors, MethodResult
 from xlmc.analysis.studies.methods.points import Evaluation, assumptions_of, box_of
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["Corners"]
 
@@ -48,7 +49,7 @@ class Corners:
         answers = {f.name: _bounds(column) for f, column in zip(model.forecasts, found.T, strict=True)}
         lost = int(np.count_nonzero(np.isnan(found).any(axis=1)))
         if lost:
-            remarks = (*remarks, f"in {lost:,} corners a forecast is not a number; these are left out")
+            remarks = (*remarks, f"in {count_text(lost)} corners a forecast is not a number; these are left out")
         return MethodResult(time.perf_counter() - started, evaluate.count, answers, remarks=(*remarks, *box.remarks))
 
 
@@ -57,10 +58,10 @@ def _corners(k: int, seed: int) -> tuple[NDArray[np.bool_], tuple[str, ...]]:
     if 1 << k <= _MOST_CORNERS:
         numbers = np.arange(1 << k)
         plural = "s" * (k != 1)
-        remark = f"all 2^{k} = {1 << k:,} corners of the {k} assumption{plural} that the forecasts depend on"
+        remark = f"all 2^{k} = {count_text(1 << k)} corners of the {k} assumption{plural} that the forecasts depend on"
         return (numbers[:, None] >> np.arange(k)) & 1 == 1, (remark,)
     count = min(_MOST_CORNERS, _MOST_NUMBERS // k)
-    remark = f"{count:,} random corners of 2^{k}: the true bounds may be wider"
+    remark = f"{count_text(count)} random corners of 2^{k}: the true bounds may be wider"
     return np.random.default_rng(seed).random((count, k)) < 0.5, (remark,)
 
 

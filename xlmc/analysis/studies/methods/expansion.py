@@ -16,6 +16,7 @@ from xlmc.montecarlo.distributions.base import Member
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.draws import Draw
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["Expansion", "Moments", "draw_assumptions", "expansion_of"]
 
@@ -99,10 +100,10 @@ def _moments_of(model: CompiledModel, seed: int) -> Moments:
         for index in varying:
             found[index] = np.nanmean(draws[:, index]), np.nanvar(draws[:, index])
         correlations = _correlations(model, draws, varying)
-        remarks.append(f"correlations are those of {len(draws):,} draws")
+        remarks.append(f"correlations are those of {count_text(len(draws))} draws")
         if varying:
             names = ", ".join(model.live[index].name for index in varying)
-            remarks.append(f"parameters vary, so mean and SD are those of {len(draws):,} draws: {names}")
+            remarks.append(f"parameters vary, so mean and SD are those of {count_text(len(draws))} draws: {names}")
     sd = np.sqrt(found[:, 1])
     return Moments(found[:, 0], correlations * np.outer(sd, sd), tuple(remarks))
 

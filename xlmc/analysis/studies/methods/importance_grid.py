@@ -26,6 +26,7 @@ from xlmc.montecarlo.sampling.sampling_methods import Margin
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.sampling.streams import Stream
 from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text
 
 __all__ = ["BINS", "DEFENSIVE", "ImportanceGrid"]
 
@@ -66,7 +67,10 @@ class ImportanceGrid:
         answers = {f.name: answer_of(c, weights, f.central) for f, c in zip(model.forecasts, columns, strict=True)}
         total, squares = float(weights.sum()), float(np.sum(weights**2))
         effective = total**2 / squares if squares else 0.0
-        remark = f"of {weights.size:,} accepted trials, {effective:,.0f} count fully (effective sample size)"
+        remark = (
+            f"of {count_text(weights.size)} accepted trials, {fixed_text(effective, 0)} count "
+            "fully (effective sample size)"
+        )
         seconds = time.perf_counter() - started
         return MethodResult(seconds, pilot + trials, answers, total / trials, effective, (remark,), extremes=ends)
 
@@ -75,7 +79,7 @@ def _learned(model: CompiledModel, trials: int, seed: int) -> dict[str, Floats]:
     """Name of an assumption -> density of its uniforms in each bin, `(BINS,)`, 1 where it is as without a grid."""
     run = simulate(model, trials=trials, seed=seed, sampling="mc", engine="numpy", keep_inputs=0)
     if not run.accepted:
-        message = f"the filters accept none of {trials:,} trials, so there is nothing to learn a grid from"
+        message = f"the filters accept none of {count_text(trials)} trials, so there is nothing to learn a grid from"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
     found = {}
     for name in (a.name for a in model.live):

@@ -31,6 +31,7 @@ from xlmc.montecarlo.model.draw_binding import parameter_target
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_limits
 from xlmc.montecarlo.simulation.simulate import simulate
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["Optimised", "in_step", "widen_bounds"]
 
@@ -161,11 +162,13 @@ class Optimised:
         """
         started = time.perf_counter()
         if len(model.live) > _MOST:
-            message = f"{len(model.live):,} assumptions are drawn, and the search handles no more than {_MOST}"
+            message = (
+                f"{count_text(len(model.live))} assumptions are drawn, and the search handles no more than {_MOST}"
+            )
             raise SimulationError(message, hint="bounds by corners look at as many as there are")
         pilot = simulate(model, trials=_PILOT, seed=seed, sampling="mc", engine="numpy", keep_inputs=None)
         if not pilot.accepted:
-            message = f"the filters accept none of {_PILOT:,} trials, so the search has nothing to start from"
+            message = f"the filters accept none of {count_text(_PILOT)} trials, so the search has nothing to start from"
             raise SimulationError(message, hint="see whether the filters contradict the assumptions")
         search = _Search(model, box_of(model, seed), np.column_stack([pilot.inputs[a.name] for a in model.live]))
         answers, ends = search.answers(pilot.forecasts)

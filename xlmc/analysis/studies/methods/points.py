@@ -19,6 +19,7 @@ from xlmc.excel.address import Cell
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_condition, upstream
 from xlmc.montecarlo.sampling.draws import Draw
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = ["Box", "Evaluation", "Outcomes", "assumptions_of", "box_of"]
 
@@ -90,10 +91,13 @@ def _remarks(model: CompiledModel, cut: list[str], varying: list[int]) -> list[s
     found = []
     if cut:
         names = ", ".join(cut)
-        found.append(f"unbounded ends are cut at the {100 * _CUT:g} and {100 - 100 * _CUT:g} % quantiles: {names}")
+        found.append(
+            f"unbounded ends are cut at the {number_text(100 * _CUT)} and "
+            f"{number_text(100 - 100 * _CUT)} % quantiles: {names}"
+        )
     if varying:
         names = ", ".join(model.live[index].name for index in varying)
-        found.append(f"parameters vary, so the extremes of {_DRAWN:,} draws stand for the ends: {names}")
+        found.append(f"parameters vary, so the extremes of {count_text(_DRAWN)} draws stand for the ends: {names}")
     if model.groups:
         found.append("correlations are not seen: any corner counts as possible")
     return found

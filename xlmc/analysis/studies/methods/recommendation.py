@@ -23,6 +23,7 @@ from xlmc.errors import capitalised
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
+from xlmc.montecarlo.statistics.number_text import fixed_text, number_text, styled_text
 
 __all__ = ["Parts", "parts_of", "recommendation"]
 
@@ -117,11 +118,14 @@ def _drawing_text(study: Study, found: Choice) -> list[str]:
     )
     if wanted.beyond > _FAR:
         sentences += (
-            f" That is {wanted.beyond:,.0f} times as many trials as the longest measured runs had; it is computed from "
+            f" That is {fixed_text(wanted.beyond, 0)} times as many trials as the longest measured "
+            "runs had; it is computed from "
             "how their errors fall."
         )
     if wanted.beyond > 1.0 and wanted.error >= _NOTABLE:
-        sentences += f" The number of trials is computed, and known to a factor of {np.exp(2.0 * wanted.error):.2g}."
+        sentences += (
+            f" The number of trials is computed, and known to a factor of {number_text(np.exp(2.0 * wanted.error), 2)}."
+        )
     others = sorted(
         (curve for curve, each in found.needs.items() if curve is not chosen and each.usable),
         key=lambda curve: found.needs[curve].seconds,
@@ -249,7 +253,7 @@ def _bounds_text(study: Study) -> list[str]:
             if name in study.varying and (answer := study.reference.answers[name]).high > answer.low
         ]
         if ratios:
-            low, high = f"{min(ratios):.1f}", f"{max(ratios):.1f}"
+            low, high = styled_text(min(ratios), ".1f"), styled_text(max(ratios), ".1f")
             widths.append(f"{curve.method.name} {low}" + (f" to {high}" if high != low else ""))
     if not widths:
         return []

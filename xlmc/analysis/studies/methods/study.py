@@ -30,6 +30,7 @@ from xlmc.montecarlo.definitions.amounts import as_tolerance
 from xlmc.montecarlo.definitions.forms import span_text
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "quick_settings", "study"]
 
@@ -173,7 +174,7 @@ def study(
     tell("how fast the workbook is")
     size, sampling = reference_size(model, engine, own, _REFERENCE_SECONDS)
     size = reference_trials or size
-    tell(f"the reference, {size:,} trials")
+    tell(f"the reference, {count_text(size)} trials")
     reference = reference_of(model, size, sampling, engine, own)
     unfiltered = unfiltered_of(model, reference)
     ladder = ladder_of(model, trials, own, reference.acceptance.value)
@@ -256,7 +257,9 @@ def _check(seed: int, replicates: int | None, trials: int | None, reference: int
         raise SimulationError(f"{replicates} replicates were asked for", hint="give 2 or more; 24 are usual")
     for what, given, least in (("trials", trials, 1_024), ("reference trials", reference, 1_024)):
         if given is not None and given < least:
-            raise SimulationError(f"{given:,} {what} were asked for", hint=f"give {least:,} or more")
+            raise SimulationError(
+                f"{count_text(given)} {what} were asked for", hint=f"give {count_text(least)} or more"
+            )
 
 
 class _Measuring:
@@ -319,7 +322,8 @@ class _Measuring:
         results: dict[tuple[str, int], list[MethodResult]] = {(m.key, b): [] for m in able for b in self._ladder}
         for replicate in range(self._replicates):
             self._tell(
-                f"runs of {self._ladder[0]:,} to {self._ladder[-1]:,} trials, {replicate + 1} of {self._replicates}"
+                f"runs of {count_text(self._ladder[0])} to {count_text(self._ladder[-1])} trials, "
+                f"{replicate + 1} of {self._replicates}"
             )
             for number, budget in enumerate(self._ladder):
                 seed = self._seed + 1 + number * _APART + replicate
@@ -378,7 +382,7 @@ class _Measuring:
         apart = max(
             self._apart(results[engine.key, budget], results[MONTE_CARLO.key, budget]) for budget in self._ladder
         )
-        remark = f"answers at the same trials differ from those of numpy by {apart:.1g} SD at the most"
+        remark = f"answers at the same trials differ from those of numpy by {number_text(apart, 1)} SD at the most"
         return Curve(engine, ordered, _setup(first, ordered[0]), (remark,), {}, apart)
 
     def time_slow(self, engine: Sampled, numpy: Curve) -> tuple[Curve, ...]:

@@ -23,6 +23,7 @@ from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import targets_of
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = ["Quadratic", "Surrogate", "fit_quadratic"]
 
@@ -69,7 +70,10 @@ class Surrogate:
         pilot = _pilot_size(len(model.live))
         cells = tuple(cell for cell in model.needed.graph.formulas if cell in model.needed.graph.varying)
         if len(cells) > _MOST_CELLS:
-            message = f"{len(cells):,} cells vary, and the surrogate looks at no more than {_MOST_CELLS:,}"
+            message = (
+                f"{count_text(len(cells))} cells vary, and the surrogate looks at no more than "
+                f"{count_text(_MOST_CELLS)}"
+            )
             raise SimulationError(message, hint="use a method that draws")
         points = _draws(model, pilot, seed)
         values = Evaluation(model, cells)(points).cells
@@ -77,14 +81,15 @@ class Surrogate:
         replaced = [cell for cell in inputs if cell in cells]
         if not replaced:
             message = (
-                f"no cell on the way to the answers is a quadratic polynomial to {100 * _TOLERANCE:g} % of its spread"
+                "no cell on the way to the answers is a quadratic polynomial to "
+                f"{number_text(100 * _TOLERANCE)} % of its spread"
             )
             raise SimulationError(message, hint="use a method that draws")
         polynomials = fit_quadratic(points, values[:, [cells.index(cell) for cell in replaced]])
         accepted, columns = _run(model, replaced, polynomials, budget, seed + _APART)
         answers = {f.name: answer_of(c, None, f.central) for f, c in zip(model.forecasts, columns.T, strict=True)}
         names = ", ".join(map(str, replaced))
-        remark = f"fitted to {pilot:,} trials; polynomials instead of {names}"
+        remark = f"fitted to {count_text(pilot)} trials; polynomials instead of {names}"
         return MethodResult(time.perf_counter() - started, pilot, answers, accepted / budget, remarks=(remark,))
 
 

@@ -33,6 +33,7 @@ from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.loop.candidates import Column, Values
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.number_text import number_text
 from xlmc.montecarlo.statistics.proportions import least_error
 
 __all__ = ["Goal", "Measure", "Measured", "Reader", "Requirement", "apart"]
@@ -262,8 +263,8 @@ class Reader:
         cleaned = " ".join(text.split())
         slack = Measure(cleaned, tuple(terms), constant, left.form, left.spread, left.units)
         if not right.terms and left.form.kind is Kind.YES_NO and not 0.0 <= right.constant <= 1.0:
-            message = f"In {cleaned!r} a probability is compared with {right.constant:g}"
-            raise SimulationError(message, hint=f"Write {right.constant:g}%, or a number from 0 to 1")
+            message = f"In {cleaned!r} a probability is compared with {number_text(right.constant)}"
+            raise SimulationError(message, hint=f"Write {number_text(right.constant)}%, or a number from 0 to 1")
         return Requirement(cleaned, slack, slack if right.terms else left, "=" not in relation)
 
     def forecast(self, name: str) -> int | None:
@@ -398,7 +399,7 @@ class _Parsing:
             return _Term(factor, _deviation, at)
         percent = 50.0 if found["median"] is not None else float(found["percent"] or found["percentile"])
         if not 0.0 < percent < 100.0:
-            raise self._wrong(f"{percent:g} is no percentile", "Percentiles lie above 0 and below 100")
+            raise self._wrong(f"{number_text(percent)} is no percentile", "Percentiles lie above 0 and below 100")
         self._forms.append((form, False, forecast.units))
         return _Term(factor, partial(_quantile, share=percent / 100.0), at)
 

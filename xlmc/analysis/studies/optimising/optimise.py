@@ -34,7 +34,7 @@ from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
-from xlmc.montecarlo.statistics.number_text import exact_text
+from xlmc.montecarlo.statistics.number_text import exact_text, number_text
 
 __all__ = ["RUNS", "Held", "OptimiseArguments", "Optimised", "optimise"]
 
@@ -176,7 +176,9 @@ def optimise(
         raise SimulationError("What is to be largest, or smallest?", hint='Give one of them, such as "mean of NPV"')
     if not runs >= 1.0 or (indifference is not None and not 0.0 <= indifference < math.inf):
         hint = "Give a search of 1 run or more, and an indifference of 0 or more"
-        raise SimulationError(f"A search of {runs:g} runs, or an indifference of {indifference}, is none", hint=hint)
+        raise SimulationError(
+            f"A search of {number_text(runs)} runs, or an indifference of {indifference}, is none", hint=hint
+        )
     reader = Reader(model, chosen)
     goal = reader.goal(maximise or minimise or "", maximise=maximise is not None)
     requirements = tuple(map(reader.requirement, subject_to))

@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.optimising.candidates import MARGIN, Space, Standing, Tried
 from xlmc.analysis.studies.optimising.measures import Measured
 from xlmc.montecarlo.loop.candidates import Values
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["MOST_ENUMERATED", "search"]
 
@@ -63,7 +64,7 @@ def search(tried: Tried, space: Space, first: Values | None, trials: int, seed: 
     least = max(_LEAST_TRIALS, 1 << max(0, math.ceil(math.log2(max(trials, 2) / 128))))
     least = _enough(tried, space, first, least, trials)
     if space.finite and space.size <= MOST_ENUMERATED:
-        tell(f"all of {space.size:,} combinations")
+        tell(f"all of {count_text(space.size)} combinations")
         tried.extend([*space.every()], least)
         return "every combination"
     tell("searching by differential evolution")
@@ -73,7 +74,7 @@ def search(tried: Tried, space: Space, first: Values | None, trials: int, seed: 
     edged = any(not each.slack.exact for each in tried.requirements)
     for divisor, share in ((32, _FIRST_STEP), (8, _FIRST_STEP / 8), (2, _FIRST_STEP / 32)):
         n = max(least, 1 << round(math.log2(max(trials // divisor, 2))))
-        tell(f"searching step by step, {n:,} trials each")
+        tell(f"searching step by step, {count_text(n)} trials each")
         best = max((tried.standing(each) for each in _leading(tried, n)), key=lambda found: found.rank)
         if tried.requirements:
             best = _slide(tried, space, best, n, share, _SLIDING * len(space.axes))
@@ -81,7 +82,7 @@ def search(tried: Tried, space: Space, first: Values | None, trials: int, seed: 
             _step_by_step(tried, space, best, n, share, seed)
     if edged:  # more trials need less of a margin
         n = 2 * trials
-        tell(f"nearer to what is required, {n:,} trials each")
+        tell(f"nearer to what is required, {count_text(n)} trials each")
         best = max((tried.standing(each) for each in _leading(tried, n, 2)), key=lambda found: found.rank)
         _slide(tried, space, best, n, _FIRST_STEP / 4, 6 + 4 * len(space.axes))
     return "differential evolution, then step by step"

@@ -22,6 +22,7 @@ import numpy as np
 
 from xlmc.analysis.studies.optimising.candidates import SURE, Ended, Standing, Tried
 from xlmc.montecarlo.loop.candidates import Values
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["Rival", "indifference_of", "judged", "leader", "race", "rivals_of"]
 
@@ -102,7 +103,7 @@ def race(tried: Tried, indifference: float, trials: int, tell: Callable[[str], N
             return
         unsure = [each.candidate for each in rivals if each.chance > _UNLIKELY]
         unsure = [each for each in unsure if tried.length(each) < _MORE * trials]
-        tell(f"telling {len(unsure):,} candidates from the best, which has {best.n:,} trials")
+        tell(f"telling {count_text(len(unsure))} candidates from the best, which has {count_text(best.n)} trials")
         if not unsure and best.n >= trials:
             return
         room, longest = _ROUND * (tried.most - tried.trials.computed), 0

@@ -15,6 +15,7 @@ from xlmc.analysis.studies.stability.formula_trees import replace_part, terms
 from xlmc.engine.graph.graph import Constant
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir
+from xlmc.montecarlo.statistics.number_text import styled_text
 
 __all__ = ["averaged_directions"]
 
@@ -129,7 +130,8 @@ def _finding(
         case.trees.title(cell),
         case.trees.written_formula(cell),
         f"{case.trees.text(mean.tree, cell)} averages directions as numbers, and these jump by a full turn",
-        f"in {share:.1%} of the {trials} they lie on both sides of the jump: there the mean is up to {half} off, and "
+        f"in {styled_text(share, '.1%')} of the {trials} they lie on both sides of the jump: there the "
+        f"mean is up to {half} off, and "
         "no error is shown",
         () if node is None else case.where(apart, node),
         case.trees.offer_formula(whole, cell),

@@ -18,6 +18,7 @@ from xlmc.excel.formula import ir
 from xlmc.excel.functions.families import function_named
 from xlmc.excel.functions.lookup.search_and_pick import POSITION
 from xlmc.montecarlo.statistics.heavy_tails import heavy_tail
+from xlmc.montecarlo.statistics.number_text import count_text, number_text, styled_text
 
 __all__ = ["amplifying_forecasts", "heavy_tails", "jumps", "narrow_filters", "rounded_angles"]
 
@@ -86,7 +87,8 @@ def _finding(
         cell,
         name,
         case.trees.written_formula(cell),
-        f"it has a heavy tail: large values t become rare only as t^-{index:.1f} does, as those of a quotient whose "
+        f"it has a heavy tail: large values t become rare only as t^-{styled_text(index, '.1f')} does, "
+        "as those of a quotient whose "
         "divisor goes through 0",
         effect,
         (),
@@ -107,7 +109,7 @@ def amplifying_forecasts(case: Case) -> Iterator[Finding]:
             continue
         through = case.derivatives.names[int(np.nansum(moved, axis=0).argmax())]
         factor = float(np.median(known))
-        percent = f"{float(f'{factor:.2g}'):,g} %"
+        percent = f"{number_text(float(f'{factor:.2g}'))} %"
         yield Finding(
             Level.NOTE,
             "amplification",
@@ -137,7 +139,8 @@ def narrow_filters(case: Case) -> Iterator[Finding]:
         filter_.cell,
         worst,
         case.trees.written_formula(filter_.cell),
-        f"the filters accept {run.accepted:,} of {run.trials:,} trials; {worst!r} rejects most, {rejected[worst]:,}",
+        f"the filters accept {count_text(run.accepted)} of {count_text(run.trials)} trials; {worst!r} "
+        f"rejects most, {count_text(rejected[worst])}",
         f"{effect}: check whether ranges, evidence and model contradict each other",
         (),
         None,
@@ -158,7 +161,8 @@ def rounded_angles(case: Case) -> Iterator[Finding]:
                 case.trees.title(cell),
                 case.trees.written_formula(cell),
                 "it subtracts angles after RADIANS, which rounds them; in degrees the difference is exact",
-                f"as little as {left:.1g} of the angles is left, and the difference loses as many of their digits",
+                f"as little as {number_text(left, 1)} of the angles is left, and the difference loses "
+                "as many of their digits",
                 (),
                 case.trees.offer_formula(better, cell),
                 1 / max(left, 1e-16),
@@ -234,7 +238,7 @@ def _of_choice(case: Case, cell: Cell, part: ir.Call) -> Finding | None:
     near = np.zeros(case.n, bool)
     near[nearest] = True
     text = f"{case.trees.text(test, cell)} changes within the ranges, and the two branches of the IF differ there"
-    effect = f"the choice jumps by about {share:.2g} of the central range of the cell"
+    effect = f"the choice jumps by about {number_text(share, 2)} of the central range of the cell"
     node = case.trees.node_of(test, cell)
     return _jump_finding(case, cell, text, effect, share, () if node is None else case.where(near, node))
 

@@ -8,6 +8,7 @@ from enum import IntEnum
 from typing import TYPE_CHECKING
 
 from xlmc.excel.address import Cell
+from xlmc.montecarlo.statistics.number_text import number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -44,8 +45,8 @@ class Where:
     def __str__(self) -> str:
         units = f" {self.units}" if self.units else ""
         if self.low == self.high:
-            return f"{self.name} = {self.low:.6g}{units}"
-        return f"{self.name} from {self.low:.6g} to {self.high:.6g}{units}"
+            return f"{self.name} = {number_text(self.low)}{units}"
+        return f"{self.name} from {number_text(self.low)} to {number_text(self.high)}{units}"
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,6 +18,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.functions.facts import Domain
 from xlmc.excel.functions.families import function_named
+from xlmc.montecarlo.statistics.number_text import number_text, styled_text
 
 __all__ = ["domain_edges"]
 
@@ -122,8 +123,8 @@ def _edge_finding(case: Case, cell: Cell, edge: _Edge) -> Finding | None:
     share = float(outside[case.special :].mean())
     if share:
         what, effect = (
-            f"{takes} goes to {_extreme(x, low, high):.4g}",
-            f"the cell is an error in {share:.2%} of the trials",
+            f"{takes} goes to {number_text(_extreme(x, low, high), 4)}",
+            f"the cell is an error in {styled_text(share, '.2%')} of the trials",
         )
         return _finding(case, cell, edge, Level.DOUBTFUL, what, effect, outside, share)
     distance = np.minimum(x - low, high - x)
@@ -131,7 +132,7 @@ def _edge_finding(case: Case, cell: Cell, edge: _Edge) -> Finding | None:
     if distance.min() > _CLOSE * spread or edge.function in _OVERFLOWS:
         return None
     near = edge.matters & (np.minimum(every - low, high - every) <= 10 * _CLOSE * spread)
-    what = f"{takes} comes as near as {distance.min():.2g} to that edge"
+    what = f"{takes} comes as near as {number_text(distance.min(), 2)} to that edge"
     effect = "close to it the function is steep, and a trial beyond it is an error"
     return _finding(case, cell, edge, Level.NOTE, what, effect, near, float(distance.min() / spread))
 
@@ -139,10 +140,14 @@ def _edge_finding(case: Case, cell: Cell, edge: _Edge) -> Finding | None:
 def _in_words(domain: Domain) -> str:
     """`0 or more`, `above 0`, `-1 to 1`, `709.8 or less`."""
     if math.isinf(domain.low):
-        return f"{domain.high:.4g} or less"
+        return f"{number_text(domain.high, 4)} or less"
     if not domain.with_ends:
-        return f"above {domain.low:g}"
-    return f"{domain.low:g} or more" if math.isinf(domain.high) else f"{domain.low:.4g} to {domain.high:.4g}"
+        return f"above {number_text(domain.low)}"
+    return (
+        f"{number_text(domain.low)} or more"
+        if math.isinf(domain.high)
+        else f"{number_text(domain.low, 4)} to {number_text(domain.high, 4)}"
+    )
 
 
 def _finding(

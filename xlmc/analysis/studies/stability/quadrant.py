@@ -25,6 +25,7 @@ from xlmc.engine.passes.random_rounding import evaluate_changes, formula_of
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.functions.values import TEXT, Value
+from xlmc.montecarlo.statistics.number_text import styled_text
 
 __all__ = ["Arctangent", "Guards", "arctangents", "guards", "lost_quadrants"]
 
@@ -108,7 +109,7 @@ def _finding(case: Case, cell: Cell, found: Arctangent, negative: Bools) -> Find
     tree = case.trees.formula(cell)
     divisor = case.trees.text(found.below, cell)
     trials = "accepted trials" if accepted.any() else "trials drawn, none of them accepted"
-    how_many = f"in every one of the {trials}" if share == 1.0 else f"in {share:.1%} of the {trials}"
+    how_many = f"in every one of the {trials}" if share == 1.0 else f"in {styled_text(share, '.1%')} of the {trials}"
     half = "180°" if any(isinstance(one, ir.Call) and one.name == "DEGREES" for one in case.trees.parts(cell)) else "π"
     better = with_quadrant(tree, found.tree, found.above, found.below)
     return Finding(

@@ -30,6 +30,7 @@ from xlmc.analysis.studies.stability.steadying import steady_form
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.montecarlo.diagnostics.digit_watch import DUST, MOST_OF_SPREAD
+from xlmc.montecarlo.statistics.number_text import number_text, styled_text
 
 __all__ = ["cell_digits", "lost_digits"]
 
@@ -166,7 +167,8 @@ def _of_absorbed(case: Case, cell: Cell, answer: Cell) -> Finding:
         case.trees.title(cell),
         case.trees.written_formula(cell),
         f"{case.trees.title(cell) or cell} loses digits" if what is None else what[1],
-        f"rounding takes all digits of a part: {title!r} shows {shown:.6g} in a trial in which it is {exact:.6g}",
+        f"rounding takes all digits of a part: {title!r} shows {number_text(shown)} in a trial in "
+        f"which it is {number_text(exact)}",
         ranges,
         instead,
         share,
@@ -240,12 +242,12 @@ def _effect(
     at = "" if random or not (missing or share >= _UNUSABLE) else " (at the base case or an end of a range)"
     if missing:
         return f"it shows a number and no error where the formula, computed exactly, has no value{at}{on}"
-    digits = f"rounding makes it wrong by up to {share:.1g} of its {of}{at}"
+    digits = f"rounding makes it wrong by up to {number_text(share, 1)} of its {of}{at}"
     if share >= _UNUSABLE:
         return f"{digits}: the digits shown are wrong{on}"
     if blurred.is_rounding:
         return f"{digits}, and {blurred}: its spread comes from rounding{on}"
-    return f"{digits}, {loss.most:.0f} times what rounding the assumptions alone would do{on}"
+    return f"{digits}, {styled_text(loss.most, '.0f')} times what rounding the assumptions alone would do{on}"
 
 
 def _explain(
@@ -280,7 +282,7 @@ def _explain(
 def _of_near_equals(case: Case, cell: Cell, lost: Cancellation) -> tuple[str, str]:
     return "cancellation", (
         f"{case.trees.text(lost.tree, cell)} is a difference of nearly equal numbers: it is as small as "
-        f"{lost.left:.1g} of its terms, and their leading digits cancel"
+        f"{number_text(lost.left, 1)} of its terms, and their leading digits cancel"
     )
 
 
@@ -290,7 +292,7 @@ def _of_logarithm(case: Case, cell: Cell, part: ir.Call, worst: Sequence[int]) -
     off = min((abs(case.exact_number(node, trial) - 1) for trial in worst), default=0.0) if node is not None else 0.0
     return "cancellation", (
         f"{argument} is rounded to 16 digits, and {part.name} uses only its difference from 1, which is as small as "
-        f"{off:.1g}: most of the digits are lost"
+        f"{number_text(off, 1)}: most of the digits are lost"
     )
 
 
@@ -308,17 +310,17 @@ def _division(case: Case, cell: Cell, division: Division) -> tuple[str, tuple[Wh
     factor = case.trees.text(division.factor, cell)
     values = np.abs(case.number(division.node))
     trial = int(np.nanargmin(values))
-    sentence = f"it divides by {factor}, which gets as small as {values[trial]:.2g}"
+    sentence = f"it divides by {factor}, which gets as small as {number_text(values[trial], 2)}"
     name = only_assumption(case, division.node)
     if name is None:
         return sentence, case.where(np.asarray(values <= 2 * division.least * np.nanmedian(values)), division.node)
     units = next(a.units for a in case.model.live if a.name == name)
     draws = case.draws[name]
-    sentence += f" at {name} = {draws[trial]:.6g} {units}".rstrip()
+    sentence += f" at {name} = {number_text(draws[trial])} {units}".rstrip()
     known = zeros(case, division.node, name)
     if known:
         near = min(known, key=partial(_distance, float(draws.min()), float(draws.max())))
-        sentence += f" and is 0 at {near:.12g} {units}".rstrip()
+        sentence += f" and is 0 at {number_text(near, 12)} {units}".rstrip()
     limit = max(2 * float(values[trial]), min(0.1, 0.5 * float(np.nanmedian(values))))
     here = draws[values <= limit]
     return sentence, (Where(name, float(here.min()), float(here.max()), units),) if here.size else ()
@@ -382,7 +384,10 @@ class _Spread:
         return self.width > 0 and self.error > MOST_OF_SPREAD * self.width
 
     def __str__(self) -> str:
-        return f"in the median trial by {self.error:.1g}, while its true central range is {self.width:.1g} wide"
+        return (
+            f"in the median trial by {number_text(self.error, 1)}, while its true central range is "
+            f"{number_text(self.width, 1)} wide"
+        )
 
 
 def _spread(case: Case, cell: Cell) -> _Spread:

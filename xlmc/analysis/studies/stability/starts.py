@@ -13,6 +13,7 @@ from xlmc.engine.graph.graph import Constant
 from xlmc.engine.graph.iteration import IteratedCells
 from xlmc.engine.passes.random_rounding import evaluate_changes, numbers_of
 from xlmc.excel.functions.values import NUMBER, Value
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = ["dependence_on_starts"]
 
@@ -62,7 +63,7 @@ def _difference(one: Floats, other: Floats) -> Floats:
 def _finding(case: Case, circle: IteratedCells, name: str, moved: Floats) -> Finding:
     visible, size = moved > _VISIBLE, float(np.max(moved))
     cell = circle.cells[0]
-    much = f"{size:.2g} of its central range" if np.isfinite(size) else "from a number to an error, or back"
+    much = f"{number_text(size, 2)} of its central range" if np.isfinite(size) else "from a number to an error, or back"
     return Finding(
         Level.WRONG if size > _WRONG else Level.DOUBTFUL,
         "start",
@@ -70,7 +71,8 @@ def _finding(case: Case, circle: IteratedCells, name: str, moved: Floats) -> Fin
         "",
         case.trees.written_formula(cell),
         f"{circle.name} comes to another end where it starts from other values than those that Excel saved",
-        f"{name!r} changes by up to {much}, visibly in {np.count_nonzero(visible):,} of {case.n:,} trials",
+        f"{name!r} changes by up to {much}, visibly in {count_text(int(np.count_nonzero(visible)))} of "
+        f"{count_text(case.n)} trials",
         case.where(visible, case.node[cell]),
         None,
         size,

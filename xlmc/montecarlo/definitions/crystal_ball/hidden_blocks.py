@@ -16,6 +16,7 @@ from xlmc.excel.workbook.structure import read_structure
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.crystal_ball.object_stream import StreamError, read_stream
 from xlmc.montecarlo.definitions.crystal_ball.stored_objects import Stored, StoredError, stored_object, stored_objects
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["Blocks", "Damage", "read_blocks", "unpacked"]
 
@@ -104,7 +105,9 @@ def unpacked(text: str) -> Any:
     except zlib.error as error:
         raise StreamError(f"it cannot be inflated ({error})") from None
     if not packed.eof:
-        raise StreamError("it is cut short" if not packed.unconsumed_tail else f"it is larger than {_LARGEST:,} bytes")
+        raise StreamError(
+            "it is cut short" if not packed.unconsumed_tail else f"it is larger than {count_text(_LARGEST)} bytes"
+        )
     if packed.unused_data:
         raise StreamError("something follows its compressed data")
     return read_stream(data)

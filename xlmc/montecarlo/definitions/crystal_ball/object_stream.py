@@ -13,6 +13,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
+from xlmc.montecarlo.statistics.number_text import count_text
+
 __all__ = ["StreamError", "Thing", "read_stream"]
 
 _MOST_ELEMENTS: Final = 2_000_000
@@ -310,5 +312,5 @@ class _Reader:
     def _spend(self, count: int) -> None:
         """Take so many elements from what a stream may have."""
         if not 0 <= count <= self._left:
-            raise StreamError(f"it claims {count:,} elements")
+            raise StreamError(f"it claims {count_text(count)} elements")
         self._left -= count

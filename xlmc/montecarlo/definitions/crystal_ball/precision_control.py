@@ -19,6 +19,7 @@ from xlmc.montecarlo.definitions.definitions import Forecast, Settings
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.stopping import LIMIT
 from xlmc.montecarlo.definitions.stopping import Precision as Goal
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = ["with_precision"]
 
@@ -56,7 +57,8 @@ def with_precision(
         findings.notice(message, where)
         return settings
     message = (
-        f"the run goes on until Crystal Ball's precision control is satisfied, {LIMIT:,} trials at most: {what}, at "
+        f"the run goes on until Crystal Ball's precision control is satisfied, {count_text(LIMIT)} "
+        f"trials at most: {what}, at "
         f"95 % confidence. A number of trials, as -n 10000, runs so many instead; {UNPROVEN}"
     )
     findings.notice(message, where)
@@ -88,5 +90,5 @@ def _why_not(stated: Collection[str], goals: Mapping[str, Goal]) -> str:
 
 
 def _words(goal: Goal) -> str:
-    width = f"{100 * goal.tolerance:.6g} %" if goal.relative else f"{goal.tolerance:.6g}"
+    width = f"{number_text(100 * goal.tolerance)} %" if goal.relative else number_text(goal.tolerance)
     return f"{' and '.join(goal.numbers)} to within {width}"

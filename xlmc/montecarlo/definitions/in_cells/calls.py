@@ -30,6 +30,7 @@ from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.identity import Claims
 from xlmc.montecarlo.definitions.tables.table_rows import static_value
 from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["InCells", "holds_call", "in_cell_forecasts", "read_in_cells"]
 
@@ -150,7 +151,9 @@ def _refuse_simulations(workbook: Workbook, found: InCells) -> None:
             )
             if number is not None and number not in range(1, most + 1):
                 of = "RiskSimtable has no values" if most == 1 else f"RiskSimtable has {most} values"
-                found.unavailable.setdefault(cell, f"{each.function} asks for simulation {number:g}, and {of}")
+                found.unavailable.setdefault(
+                    cell, f"{each.function} asks for simulation {number_text(number)}, and {of}"
+                )
 
 
 def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findings) -> None:

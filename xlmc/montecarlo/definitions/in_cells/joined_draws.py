@@ -30,6 +30,7 @@ from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.table_rows import number_in
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import plain
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["in_cell_copulas", "in_cell_correlations"]
 
@@ -243,7 +244,10 @@ def _copula(workbook: Workbook, group: Sequence[_Row], findings: Findings) -> Co
         good = theta >= 1 if kind == "Gumbel" else theta > 0 or (kind == "Frank" and len(names) == 2 and theta < 0)
         if not good or abs(theta) > _MOST_THETA:
             above = "at least" if kind == "Gumbel" else "above"
-            message = f"Theta ({show(theta)}) of {kind} must be {above} {least:g}, and at most {_MOST_THETA:g}"
+            message = (
+                f"Theta ({show(theta)}) of {kind} must be {above} {number_text(least)}, and at "
+                f"most {number_text(_MOST_THETA)}"
+            )
             raise DefinitionError(message, where=where, hint="Correct the number")
         return Copula(kind, names, where, theta, turned=_turned(kind, reflection, positions, where))
     degrees = _beside(workbook, grid, area, _DEGREES) if kind == "t" else None

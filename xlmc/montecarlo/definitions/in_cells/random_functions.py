@@ -16,6 +16,7 @@ from xlmc.excel.formula import ir
 from xlmc.montecarlo.definitions.in_cells.call_arguments import is_left_out, number_of, quotient, whole_part
 from xlmc.montecarlo.definitions.in_cells.call_draws import Arguments, Drawn, Properties, Signature
 from xlmc.montecarlo.distributions import FAMILIES
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["INVERSES", "random_draw"]
 
@@ -145,4 +146,4 @@ def _size(tree: ir.Expression) -> int:
 
 def _too_many() -> FormulaError:
     hint = "write its rows and columns as numbers, so that each draw keeps its own stream"
-    return FormulaError(f"RANDARRAY must have a fixed size of 1 to {_MOST:,} draws", hint=hint)
+    return FormulaError(f"RANDARRAY must have a fixed size of 1 to {count_text(_MOST)} draws", hint=hint)

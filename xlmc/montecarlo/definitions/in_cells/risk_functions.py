@@ -23,6 +23,7 @@ from xlmc.montecarlo.definitions.in_cells.risk_properties import is_property, pr
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.distributions.by_percentiles import by_percentiles
 from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["ALTERNATES", "RISK", "TRUNCATED", "risk_draw"]
 
@@ -332,7 +333,7 @@ def _pairs(
             given[key] = alternate.converted[key](value) if key in alternate.converted else value
         else:
             share = _share(function, what, descending)
-            taken, named = share in points, f"{100 * share:g} %"
+            taken, named = share in points, f"{number_text(100 * share)} %"
             points[share] = value
         if taken:
             raise FormulaError(f"{function} is given {named} twice", hint="keep one of them")

@@ -19,6 +19,7 @@ from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
 from xlmc.montecarlo.definitions.tables.table_rows import Row, number, optional_text, rows_of
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import nearest, plain
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["read_decisions", "values_between"]
 
@@ -121,7 +122,9 @@ def values_between(low: float, high: float, step: float, where: Cell) -> tuple[f
     count = math.floor((high - low) / step + _SLACK) + 1
     if count > _MOST_VALUES:
         raise DefinitionError(
-            f"{count:,} values are more than {_MOST_VALUES:,}", where=where, hint="Give a larger Step"
+            f"{count_text(count)} values are more than {count_text(_MOST_VALUES)}",
+            where=where,
+            hint="Give a larger Step",
         )
     return tuple(np.minimum(low + step * np.arange(count), high).tolist())
 

@@ -17,6 +17,7 @@ from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
 from xlmc.montecarlo.definitions.tables.table_rows import Row, as_text, central_share, number_in, required_text, rows_of
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import did_you_mean, plain
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["LEAST_PERCENT", "read_settings", "setting_names"]
 
@@ -149,11 +150,12 @@ def _read(setting: Setting, engines: Collection[str], row: Row, _findings: Findi
 
 
 def _word(row: Row, kind: Word, words: Collection[str]) -> str:
-    """Return the one of the words that was typed, in any case."""
+    """Return the one of the words that was typed, in any case; a number is none, as Excel changes how it is typed."""
     typed = required_text(row, "Value")
-    found = {plain(word): word for word in words} | kind.also()
-    if plain(typed) in found:
-        return found[plain(typed)]
+    spelling = kind.spelling or plain
+    found = {spelling(word): word for word in words} | kind.also()
+    if spelling(typed) in found and isinstance(row.content("Value").value, str):
+        return found[spelling(typed)]
     *some, last = words
     hint = kind.hint or (did_you_mean(typed, words) if kind.suggest else f"Use {', '.join(some)} or {last}")
     raise DefinitionError(kind.fault.format(repr(typed)), where=row.cell("Value"), hint=hint)
@@ -177,7 +179,7 @@ def _whole_number(row: Row, name: str, least: int, most: int) -> int:
     written = _whole_number_as_text(row, name)
     value = _number_of(row, name) if written is None else written
     if not least <= value <= most or value != int(value):
-        message = f"{name} must be a whole number from {least:,} to {most:,}, not {show(value)}"
+        message = f"{name} must be a whole number from {count_text(least)} to {count_text(most)}, not {show(value)}"
         raise DefinitionError(message, where=row.cell("Value"), hint="Correct the number")
     return int(value)
 

@@ -19,6 +19,7 @@ from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.stating import Named, named
 from xlmc.montecarlo.definitions.tables.reserved_tables import NEAR_MISS, DefinitionTable
 from xlmc.montecarlo.distributions.spelling import name_key, nearest, plain
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = [
     "Row",
@@ -320,7 +321,7 @@ def is_used(row: Row, switched: Mapping[str, bool]) -> bool:
 
 def named_rows(rows: Sequence[_HasName]) -> str:
     """Name some rows for one message, the first few of them."""
-    more = f" and {len(rows) - _MOST_NAMED:,} more" if len(rows) > _MOST_NAMED else ""
+    more = f" and {count_text(len(rows) - _MOST_NAMED)} more" if len(rows) > _MOST_NAMED else ""
     return ", ".join(repr(each.name) for each in rows[:_MOST_NAMED]) + more
 
 
@@ -348,7 +349,7 @@ def central_share(what: str, value: float, where: Cell, findings: Findings) -> f
         raise DefinitionError(message, where=where, hint="Type the central range in percent, such as 51")
     share = value if value < 1 else value / 100
     if value <= 1:
-        findings.notice(f"{what} {as_text(value)} is read as {share * 100:.12g} %", where)
+        findings.notice(f"{what} {as_text(value)} is read as {number_text(share * 100, 12)} %", where)
     return share
 
 

@@ -23,6 +23,7 @@ from xlmc.montecarlo.loop.stopping.progress import RunningMoments
 from xlmc.montecarlo.loop.stopping.rule import Columns, Observed
 from xlmc.montecarlo.model.plain_words import be, list_of
 from xlmc.montecarlo.statistics import Estimate, Sample, percentile
+from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = [
     "LEAST_EQUAL",
@@ -103,9 +104,12 @@ class UntilPrecise:
     @property
     def goal(self) -> str:
         asked = self._asked
-        width = f"{asked.tolerance:.6g}" if not asked.relative else f"{100.0 * asked.tolerance:.6g} %"
+        width = number_text(asked.tolerance) if not asked.relative else f"{number_text(100.0 * asked.tolerance)} %"
         what = f"{list_of(asked.numbers)} of {list_of(self._names)}"
-        return f"{what} {be(len(self._wanted))} known to within {width} ({100.0 * asked.confidence:.6g} % confidence)"
+        return (
+            f"{what} {be(len(self._wanted))} known to within {width} "
+            f"({number_text(100.0 * asked.confidence)} % confidence)"
+        )
 
     @property
     def share(self) -> float:

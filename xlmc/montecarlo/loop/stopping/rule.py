@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo.definitions.stopping import AcceptedTrials
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["Columns", "Observed", "StopRule", "UntilAccepted"]
 
@@ -77,7 +78,7 @@ class UntilAccepted:
 
     @property
     def goal(self) -> str:
-        return f"{self._wanted:,} trials were accepted"
+        return f"{count_text(self._wanted)} trials were accepted"
 
     @property
     def share(self) -> float:

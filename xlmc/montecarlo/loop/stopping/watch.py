@@ -18,6 +18,7 @@ from xlmc.montecarlo.loop.stopping.rule import Columns, Observed, StopRule, Unti
 from xlmc.montecarlo.loop.stopping.stopped import Stopped
 from xlmc.montecarlo.model.plain_words import duration
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["RULES", "Interruption", "Watch", "chosen_rule", "may_end_early", "refuse_other_sampling"]
 
@@ -72,7 +73,9 @@ class Watch:
         if self._rule is not None and self._rule.reached(block, columns):
             return Stopped(self._rule.key, self._rule.goal, goal)
         if self._seen >= self._trials:
-            limit = "all trials were run" if goal is None else f"the limit of {self._trials:,} trials was reached"
+            limit = (
+                "all trials were run" if goal is None else f"the limit of {count_text(self._trials)} trials was reached"
+            )
             return Stopped("trials", limit, goal)
         return self.meanwhile(interrupted=interrupted)
 

@@ -42,7 +42,7 @@ class PairView {
       return;
     }
     const shown = Math.min(pair.x.length, MOST_DOTS);
-    const related = pair.correlation === null ? "" : `; rank correlation ${pair.correlation.toFixed(2)}`;
+    const related = pair.correlation === null ? "" : `; rank correlation ${styled(pair.correlation.toFixed(2))}`;
     this.said.textContent = `${countText(shown)} of ${countText(pair.trials)} accepted trials${related}`;
     this.quadrants.textContent = pair.quadrants;
     this.chart.setAttribute("aria-label", `${pair.second} against ${pair.first}: ${this.said.textContent}`);

@@ -12,7 +12,7 @@ function stepText(value, step) {
   if (value === null || value === undefined) return "";
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const rounded = Number(value.toFixed(Math.min(decimals, 12)));
-  return Math.abs(rounded - value) <= 1e-9 * Math.abs(value) ? valueText(value, decimals) : String(Number(value.toPrecision(12)));
+  return Math.abs(rounded - value) <= 1e-9 * Math.abs(value) ? valueText(value, decimals) : shortText(value, 12);
 }
 
 /** A value on the grid of its step. */
@@ -60,7 +60,7 @@ class Track {
     if (!good) this.axis = [low - 0.3 * span, high + 0.3 * span];
     const [first, last] = this.axis;
     const decimals = Math.min(12, decimalsOf(10 ** Math.floor(Math.log10(last - first) - 1))); // the ends differ as they are shown
-    const shown = this.axis.map((end) => `${Number(end.toFixed(decimals))}`);
+    const shown = this.axis.map((end) => styled(`${Number(end.toFixed(decimals))}`, false));
     [...this.ends.children].forEach((place, i) => { place.textContent = shown[i]; });
   }
 

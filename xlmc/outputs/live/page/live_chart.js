@@ -57,7 +57,7 @@ function sharesElement({ name, shares }) {
       make("thead", {}, make("tr", {}, ...heads.map((text) => (text ? make("th", { scope: "col", text }) : make("td"))))),
       make("tbody", {}, ...shares.map(([label, text, now, before]) => make("tr", {},
         make("th", { scope: "row" }, named(label)), make("td", {}, bar(now)), make("td", { class: "number", text }),
-        ...(compared ? [make("td", { class: "number", text: `${before.toFixed(2)} %` })] : []))))));
+        ...(compared ? [make("td", { class: "number", text: `${styled(before.toFixed(2))} %` })] : []))))));
 }
 
 class LivePanel extends Panel {
@@ -82,7 +82,7 @@ class LivePanel extends Panel {
 
   /** How the forecast is stated now; what is being typed stays. */
   stated({ threshold, central, changed }) {
-    const texts = { ".above": threshold === null ? "" : this.kept("above", threshold), ".central": String(central) };
+    const texts = { ".above": threshold === null ? "" : this.kept("above", threshold), ".central": shortText(central, 12) };
     for (const [place, text] of Object.entries(texts)) {
       const box = this.find(place);
       if (document.activeElement === box && box.value !== box.dataset.shown) continue;

@@ -60,6 +60,7 @@ const Live = {
     document.getElementById("book").textContent = message.name;
     document.title = `${message.name}: live`;
     this.settings = message.settings;
+    Object.assign(SIGNS, message.signs);
     this.left.book(message);
     this.right.book(message);
   },

@@ -178,7 +178,7 @@ def test_a_saved_run_and_a_result_workbook_are_repeated_in_their_style(book, tmp
 def test_a_command_prints_in_the_style_of_the_book(tmp_path, monkeypatch, command):
     monkeypatch.setitem(STYLES, MARKED, (THOUSANDS, DECIMAL))
     printed = []
-    for name, settings in (("usual", []), ("marked", [["Number style", MARKED]])):
+    for name, settings in (("a", []), ("b", [["Number style", MARKED]])):
         folder = tmp_path / name
         folder.mkdir()
         path = write_book(folder / "book.xlsx", filtered=True, settings=settings)

@@ -22,7 +22,7 @@ from xlmc.montecarlo.model.draw_binding import base_point
 from xlmc.montecarlo.rare.account import probability_text
 from xlmc.montecarlo.statistics import Estimate, complement, format_estimate
 from xlmc.montecarlo.statistics.estimate import finite
-from xlmc.montecarlo.statistics.number_text import count_text, decimals_of, exact_text, number_text
+from xlmc.montecarlo.statistics.number_text import count_text, decimals_of, number_text
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column
@@ -245,7 +245,7 @@ def range_heading(rows: Sequence[SummaryRow]) -> str:
 
 def percent(share: float) -> str:
     """`0.51 -> 51 %`."""
-    return f"{exact_text(100.0 * share)} %"
+    return f"{number_text(100.0 * share, 12)} %"
 
 
 def estimate_text(estimate: Estimate) -> str:

@@ -17,9 +17,12 @@ if TYPE_CHECKING:
     from xlsxwriter.chart_scatter import ChartScatter
     from xlsxwriter.workbook import Workbook
 
-__all__ = ["DATA", "FIRST_ERROR", "write_charts"]
+__all__ = ["DATA", "FIRST_ERROR", "HEADER", "write_charts"]
 
 DATA: Final = "Chart data"
+
+HEADER: Final = 3
+"""The row of headings of a sheet of data, counted from 0."""
 FIRST_ERROR: Final = 5
 """The column of the sheet Runs in which errors begin; the trials stand in the second."""
 
@@ -56,9 +59,9 @@ _GRIDLINES: Final = {"visible": True, "line": {"color": GRID, "width": 0.5}}
 class _Data:
     """The sheet that the main chart is drawn from: a name, then across and upwards, a row a point."""
 
-    def __init__(self, page: Page) -> None:
+    def __init__(self, page: Page, name: str) -> None:
         self._page = page
-        page.title("Chart data", "The points of the chart of speed against accuracy")
+        page.title_of_data("Chart data", "The points of the chart of speed against accuracy.", name, HEADER)
         page.row += 1
         page.table(("Series", "Across", "Upwards", "Down to", "Up to"), ())
 
@@ -80,7 +83,9 @@ def write_charts(
     if picture is not None:
         for sentence in HOW_TO_READ:
             page.wide(sentence, "paragraph", _WIDE)
-        page.sheet.insert_chart(page.row + 1, 0, _main(made, _Data(data), picture), {"object_position": 1})
+        page.sheet.insert_chart(
+            page.row + 1, 0, _main(made, _Data(data, study.model.workbook.name), picture), {"object_position": 1}
+        )
     top = page.row + 1 + _MAIN_ROWS
     titles = {FIRST_ERROR + n: f"{name}, % of the 5–95 % range" for n, name in enumerate(STATISTICS.values())}
     titles[FIRST_ERROR + len(STATISTICS)] = "Accepted share, % of it"

@@ -8,7 +8,7 @@ import numpy as np
 
 from xlmc.analysis.studies.methods import STATISTICS, Curve, Runs, Study
 from xlmc.outputs.methods import methods_tables
-from xlmc.outputs.methods.excel_charts import DATA, write_charts
+from xlmc.outputs.methods.excel_charts import DATA, HEADER, write_charts
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.page import Page
@@ -49,9 +49,8 @@ def add_sheets(study: Study, made: ExactBook, styles: Styles) -> None:
 
 def _write_runs(page: Page, study: Study) -> list[tuple[Curve, int, int]]:
     """Write a row for the runs of each length; gives each curve's first and last row."""
-    page.title(
-        "Every run length", "Root mean square errors over the runs and the forecasts; the charts are drawn from here"
-    )
+    below = "Root mean square errors over the runs and the forecasts; the charts are drawn from here."
+    page.title_of_data("Every run length", below, study.model.workbook.name, HEADER)
     page.row += 1
     page.table(_HEADINGS, ())
     curve_rows = []
@@ -63,7 +62,6 @@ def _write_runs(page: Page, study: Study) -> list[tuple[Curve, int, int]]:
             page.line(_length_cells(study, curve, runs))
         curve_rows.append((curve, first, page.row - 1))
     page.line([Shown("The reference's own error", look="label"), *[cells.BLANK] * 4, *_floor(study)])
-    page.set_up_printing(study.model.workbook.name)
     return curve_rows
 
 

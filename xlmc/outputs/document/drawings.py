@@ -14,7 +14,7 @@ from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
-from xlmc.montecarlo.statistics.number_text import number_text, two_digit_exponent
+from xlmc.montecarlo.statistics.number_text import fixed_text, number_text, two_digit_exponent
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Drawing, Line, Lines, Shape
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.sheets.styles import DARK, GRID, INK, LIGHT
@@ -43,6 +43,8 @@ COLOURS = ("#1F3044", "#2F6DA8", "#C8553D", "#4F8A5B", "#8E5EA2", "#D99A2B")
 """Of lines."""
 _ROUND_STEPS = (1.0, 2.0, 5.0, 10.0)
 _ROOM = 0.03
+_NARROW = 100.0
+"""Millimetres of a forecast's figure where there are many."""
 _DASHES = ' stroke-dasharray="4 3"'
 
 Floats = NDArray[np.float64]
@@ -54,16 +56,17 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
     Args:
         figure: the forecast.
         result: its trials.
-        width: in millimetres.
+        width: in millimetres; a narrow one is lower, too, so that a page has room for four.
     """
-    left, right, top, middle, bottom = 62.0, 556.0, 14.0, 176.0, 306.0
+    left, right, top = 62.0, 556.0, 14.0
+    middle, bottom = (176.0, 306.0) if width > _NARROW else (120.0, 214.0)
     bins, answer = figure.bins, figure.answer
     first, last = float(bins.edges[0]), float(bins.upper_edges[-1])
     across = Scale(first, last, left, right, bins.width * bins.step)
     most = float((bins.inside + bins.outside).max())
     up = scale_of([0.0, 1.05 * max(most, 1.0)], middle, top, most=5)
     up = Scale(0.0, up.high, middle, top, up.step)
-    found = [*_grid(up, left, right, "{:,.0f}")]
+    found = [*_grid(up, left, right, "")]
     for edge, upper, inside, outside in zip(bins.edges, bins.upper_edges, bins.inside, bins.outside, strict=True):
         x, wide = across(float(edge)), across(float(upper)) - across(float(edge))
         total, central = float(inside + outside), float(inside)
@@ -71,7 +74,7 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
         found += [_rect(x, up(central), wide, middle - up(central), DARK)] if central else []
     found += [line_to(left, middle, right, middle, INK), text_at(16, (top + middle) / 2, "Trials", turned=True)]
     share = Scale(0.0, 100.0, bottom, middle + 16, 25.0)
-    found += _grid(share, left, right, "{:.0f} %")
+    found += _grid(share, left, right, " %")
     low, high = (across(_near(end.value, first, last)) for end in (answer.low, answer.high))
     found.append(_rect(low, share(100.0), high - low, bottom - share(100.0), LIGHT, opacity=0.5))
     levels = np.linspace(0.0, 1.0, _POINTS)
@@ -233,11 +236,11 @@ def _short(name: str, longest: int = _LONGEST) -> str:
     return name if len(name) <= longest else f"{name[: longest - 1]}…"
 
 
-def _grid(scale: Scale, left: float, right: float, form: str) -> list[str]:
+def _grid(scale: Scale, left: float, right: float, unit: str) -> list[str]:
     found = []
     for tick in scale.ticks:
         found.append(line_to(left, scale(tick), right, scale(tick), GRID))
-        found.append(text_at(left - 6, scale(tick) + 4, form.format(tick), anchor="end"))
+        found.append(text_at(left - 6, scale(tick) + 4, f"{fixed_text(tick, 0)}{unit}", anchor="end"))
     return found
 
 

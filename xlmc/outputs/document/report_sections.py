@@ -65,9 +65,9 @@ if TYPE_CHECKING:
 
 __all__ = ["MAKERS", "Material"]
 
-_MOST_BARS, _MOST_OF_MANY = 6, 4
+_MOST_BARS, _MOST_OF_MANY = 6, 3
 _FEW: Final = 4
-"""Forecasts whose figures are large, two a page; those of more stand three a page, and their influences in a table."""
+"""Forecasts whose figures are large, two a page; those of more stand four a page, and their influences in a table."""
 _MOST_FIGURES: Final = 12
 """Forecasts that a report draws."""
 _LARGE, _SMALL = 160.0, 100.0

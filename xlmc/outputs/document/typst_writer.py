@@ -122,7 +122,7 @@ def _source(document: Document) -> str:
     author = f"({_text(document.author)},)" if document.author else "()"
     lines = [
         f"#set document(title: {_text(document.title)}, author: {author}, date: {day})",
-        f'#set page(paper: "{_PAPERS[document.paper]}", margin: (x: 2.2cm, top: 2.4cm, bottom: 2.2cm),',
+        f'#set page(paper: "{_PAPERS[document.paper]}", margin: (x: 2.2cm, top: 1.9cm, bottom: 1.6cm),',
         f"  header: [#text(size: 8.5pt, {_text(document.head)})],",
         f"  footer: [#set text(size: 8.5pt); #{_text(document.foot)} #h(1fr) "
         '#context [#{"Page "}#counter(page).display("1 of 1", both: true)]])',
@@ -151,7 +151,7 @@ def _block(block: Block, leads: bool) -> Iterator[str]:
             yield f"#block(sticky: {str(leads).lower()}, par(text(size: {_size(look)}, {_text(text)})))"
         case Bullets(texts, look):
             items = ", ".join(f"[#{_text(text)}]" for text in texts)
-            yield f"#text(size: {_size(look)}, list(spacing: .7em, {items}))"
+            yield f"#text(size: {_size(look)}, list(spacing: {'.5em' if look == 'small' else '.7em'}, {items}))"
         case Code(text):
             yield f"#raw({_text(text)}, block: true)"
         case Figure(drawing, caption):

@@ -141,7 +141,8 @@ def in_words(values, low, high):
     """The certainty as `xlmc.montecarlo.statistics` has it, in the words of the page."""
     count = int(np.count_nonzero((values >= low) & (values <= high)))
     share = proportion(count, values.size)
-    return count, f"{format_estimate(100 * share.value, 100 * share.error)} %", share.interval
+    known = f"{100 * share.value:.0f}" if share.value in (0.0, 1.0) else None
+    return count, f"{known or format_estimate(100 * share.value, 100 * share.error)} %", share.interval
 
 
 def check(chart, values):

@@ -166,9 +166,11 @@ class _Writer:
         for number, (row, contents) in enumerate(zip(made.rows, lines, strict=True)):
             heads = number == 0 and bool(table.heads)
             _keep_whole(row, repeated=heads)
+            leads = number in (0, bool(table.heads), len(lines) - 2) and number < len(lines) - 1
             for index, (cell, content) in enumerate(zip(row.cells, contents, strict=True)):
                 cell.width = widths[index]
                 self._cell(cell.paragraphs[0], content, bold=heads, right=index in at_right)
+                cell.paragraphs[0].paragraph_format.keep_with_next = leads or None  # no row stands alone on a page
         self._file.add_paragraph().paragraph_format.space_after = _points(2)
 
     def _cell(self, paragraph: Any, content: Content, *, bold: bool, right: bool) -> None:

@@ -170,10 +170,12 @@ def _table(table: Table) -> str:
     columns = ", ".join(f"{width:g}fr" for width in table.relative_widths)
     at_right = table.at_right
     aligned = ", ".join("right" if index in at_right else "left" for index in range(table.columns))
-    heads = ", ".join(f"[#{_text(head)}]" for head in table.heads)
+    heads = ", ".join([_NO_CELL, *(f"[#{_text(head)}]" for head in table.heads)])
     top = f"table.header({heads}), " if heads else ""
-    rows = "".join(f"  {', '.join(_cell(cell) for cell in row)},\n" for row in table.rows)
-    inner = f"table(columns: ({columns},), align: ({aligned},), {top}\n{rows})"
+    rows = "".join(
+        f"  {side}{', '.join(map(_cell, row))},\n" for side, row in zip(_sides(table), table.rows, strict=True)
+    )
+    inner = f"table(columns: (0pt, {columns},), align: (left, {aligned},), {top}\n{rows})"
     figure = f"#figure(kind: table, caption: [#{_text(table.caption)}], {inner})"
     looks = []
     if table.crowded > 1.0:
@@ -181,6 +183,22 @@ def _table(table: Table) -> str:
     if len(table.rows) <= _WHOLE and not any(isinstance(cell, Drawing | Chart) for row in table.rows for cell in row):
         looks.append("#show figure: set block(breakable: false)")
     return "\n".join(["#[", *looks, f"{figure}]"]) if looks else figure
+
+
+def _sides(table: Table) -> list[str]:
+    """Return what begins each row: in a column without width, a cell that keeps the first two rows, or the last two,
+    together on a page, so that no row stands alone there.
+    """
+    count = len(table.rows)
+    sides = [f"{_NO_CELL}, "] * count
+    for first in {0, count - 2} if count > _TOGETHER else ():
+        sides[first : first + 2] = "table.cell(rowspan: 2, breakable: false, inset: 0pt)[], ", ""
+    return sides
+
+
+_NO_CELL: Final = "table.cell(inset: 0pt)[]"
+_TOGETHER: Final = 3
+"""Rows of a table of which some may be kept together."""
 
 
 def _cell(content: Content) -> str:

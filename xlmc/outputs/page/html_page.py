@@ -201,7 +201,7 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
 def _packed_section(key: str, part: Html) -> Html:
     """Make a section that holds another one packed until its button is pressed: many elements make browsers slow."""
     button = element("button", "Show", type="button", data_packed=_packed(part.source))
-    said = element("p", button, " This page is large: this part is shown when it is asked for.", class_="how")
+    said = element("p", button, " This page is large: this part is shown, and printed, when it is asked for.")
     return element("section", element("h2", _LINKS[key]), said, id=key)
 
 

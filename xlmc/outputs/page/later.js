@@ -30,16 +30,18 @@ const Later = {
     return Promise.all([...document.querySelectorAll("button[data-packed]")].map(Later.open));
   },
 
-  /** Call an action once for each place, when it comes into view. */
+  /** Call an action once for each place, when it comes into view or is printed. */
   whenSeen(places, act) {
+    const waiting = new Set(places);
+    const show = (place) => {
+      seen.unobserve(place);
+      if (waiting.delete(place)) act(place);
+    };
     const seen = new IntersectionObserver((entries) => {
-      for (const { isIntersecting, target } of entries) {
-        if (!isIntersecting) continue;
-        seen.unobserve(target);
-        act(target);
-      }
+      entries.filter(({ isIntersecting }) => isIntersecting).forEach(({ target }) => show(target));
     }, { rootMargin: "400px" });
     places.forEach((place) => seen.observe(place));
+    addEventListener("beforeprint", () => places.forEach(show));
   },
 
   /** A search over the forecasts, and a link to each. */

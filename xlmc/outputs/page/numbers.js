@@ -19,6 +19,11 @@ function estimateText(value, error) {
   return `${rounded(value)} ± ${rounded(error)}`;
 }
 
+/** A share in percent with its error; all or none of the trials have none. */
+function percentText({ value, error }) {
+  return value === 0 || value === 1 ? String(100 * value) : estimateText(100 * value, 100 * error);
+}
+
 /** The power of ten of a number rounded to two digits: 0.00996 -> -2. */
 function exponentOf(number) {
   return Number(number.toExponential(1).split("e")[1]);

@@ -199,7 +199,7 @@ class Panel {
   certainty() {
     const { count, doubt } = this.trials.between(this.state.low, this.state.high);
     const share = shareOf(count, this.trials.trials, this.z);
-    return { count, doubt, share, text: estimateText(100 * share.value, 100 * share.error) };
+    return { count, doubt, share, text: percentText(share) };
   }
 
   say({ count, doubt, share, text }) {
@@ -231,7 +231,7 @@ class Panel {
     const said = document.createElement("span");
     const counted = `${doubt ? "about " : ""}${countText(count)} of ${countText(this.second.trials)}`;
     said.className = "second";
-    said.textContent = `Second run: ${estimateText(100 * share.value, 100 * share.error)} % (${counted}).`;
+    said.textContent = `Second run: ${percentText(share)} % (${counted}).`;
     return said;
   }
 
@@ -252,8 +252,7 @@ class Panel {
     }
     const reverse = this.state.view === "reverse";
     const { count } = reverse ? this.trials.between(value, Infinity) : this.trials.between(-Infinity, value);
-    const { error } = shareOf(count, trials, this.z);
-    const share = estimateText((100 * count) / trials, 100 * error);
+    const share = percentText(shareOf(count, trials, this.z));
     return `${reverse ? "From" : "Up to"} ${this.written(value, this.decimals)}${unit}: ${share} %`;
   }
 

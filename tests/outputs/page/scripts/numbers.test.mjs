@@ -6,9 +6,9 @@ import { test } from "node:test";
 import { runInThisContext } from "node:vm";
 
 runInThisContext(readFileSync(new URL("../../../../xlmc/outputs/page/numbers.js", import.meta.url), "utf8"));
-/* global computed, decimalsOf, estimateText, formText, plainNumber, typed, whyNoNumber */
+/* global SIGNS, computed, countText, decimalsOf, estimateText, formText, percentText, plainNumber, typed, whyNoNumber */
 
-const PLAIN = { factor: 1, before: "", after: "", thousands: ",", decimal: "." };
+const PLAIN = { factor: 1, before: "", after: "" };
 
 test("a step of an axis is written with all its decimals, and with no more", () => {
   for (const [step, decimals] of [[1, 0], [2, 0], [5, 0], [10, 0], [25, 0], [2.5, 1], [0.5, 1], [0.2, 1], [0.25, 2], [0.025, 3],
@@ -28,6 +28,28 @@ test("an error has two digits, and its value as many decimals", () => {
   assert.equal(estimateText(51.234, 0.8412), "51.23 ± 0.84");
   assert.equal(estimateText(51.234, 0.0996), "51.23 ± 0.10");
   assert.equal(estimateText(51234, 841), "51230 ± 840");
+});
+
+test("a share of all or none of the trials has no error", () => {
+  assert.equal(percentText({ value: 1, error: 0.001 }), "100");
+  assert.equal(percentText({ value: 0, error: 0.001 }), "0");
+  assert.equal(percentText({ value: 0.5, error: 0.001 }), "50.00 ± 0.10");
+});
+
+test("numbers are written, and read again, with the signs of the run", () => {
+  for (const [thousands, decimal, count, value, estimate, read] of [
+    [".", ",", "3.542", "1.234,5", "51,23 ± 0,84", [["1.234", 1234], ["1,234", 1.234], ["0.7", 0.7]]],
+    ["\u00a0", ",", "3\u00a0542", "1\u00a0234,5", "51,23 ± 0,84", [["1\u00a0234", 1234], ["1,234", 1.234]]],
+    ["'", ".", "3'542", "1'234.5", "51.23 ± 0.84", [["1'234", 1234], ["1.234", 1.234]]],
+    ["", ".", "3542", "1234.5", "51.23 ± 0.84", [["1.234", 1.234]]],
+    [",", ".", "3,542", "1,234.5", "51.23 ± 0.84", [["1,234", 1234], ["1.234", 1.234]]],
+  ]) {
+    Object.assign(SIGNS, { thousands, decimal });
+    assert.equal(countText(3542), count);
+    assert.equal(formText(1234.5, 1, PLAIN), value);
+    assert.equal(estimateText(51.234, 0.8412), estimate);
+    for (const [text, number] of [...read, [value, 1234.5], [count, 3542]]) assert.equal(plainNumber(text), number, text);
+  }
 });
 
 test("a number is read as people write it, or refused", () => {

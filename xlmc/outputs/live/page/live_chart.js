@@ -244,7 +244,7 @@ class LivePanel extends Panel {
     const { count: upto, doubt } = this.trials.reached(threshold, true);
     const share = shareOf(trials - upto, trials, this.z);
     const about = doubt ? "about " : "";
-    place.textContent = `P = ${estimateText(100 * share.value, 100 * share.error)} % (${about}${countText(trials - upto)} of ${countText(trials)})`;
+    place.textContent = `P = ${percentText(share)} % (${about}${countText(trials - upto)} of ${countText(trials)})`;
   }
 
   /** The numbers beside the chart, now and behind, and how the mean has moved. */

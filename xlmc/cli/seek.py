@@ -48,11 +48,13 @@ def seek(
 ) -> None:
     """Find the value of one cell of BOOK at which another has a given value, all else as it is in the workbook."""
     from xlmc.analysis.studies import seek as study
+    from xlmc.cli.printing import use_number_style
     from xlmc.outputs.study_report import Files
 
     files = Files((*output, *also), [book], overwrite=overwrite, functions=functions)
     files.check()
     found = study.seek(book, cell, to, by, low=low, high=high, functions=functions)
+    use_number_style(found.number_style)
     report = _report(found)
     written = give_out(report, files.writers(report), as_json, [f"{report.below}.", *report.blocks])
     written.check()

@@ -66,6 +66,7 @@ class Found:
         curve: `(p,)` values of `by`, and `(p,)` what the cell is there; NaN where it has no number.
         form: how the numbers of the cell are written.
         form_by: how those of `by` are.
+        number_style: the workbook's.
     """
 
     workbook: Workbook
@@ -82,6 +83,7 @@ class Found:
     curve: tuple[Floats, Floats]
     form: Form
     form_by: Form
+    number_style: str = ""
 
     @property
     def value(self) -> float | None:
@@ -161,6 +163,7 @@ def seek(
         curve=(at, answers(at)),
         form=form,
         form_by=form_by,
+        number_style=definitions.settings.number_style,
     )
 
 

@@ -326,7 +326,7 @@ class Scale:
         """As many of the ticks as leave their texts room beside each other."""
         found = self.marks
         wide = _CHARACTER * max((len(text) for _, text in found), default=0) + _CHARACTER
-        room = abs(self(self.step) - self(0.0))
+        room = abs(self.stop - self.start) * (self.step / (self.high - self.low))
         return found[:: max(math.ceil(wide / room), 1)]
 
 

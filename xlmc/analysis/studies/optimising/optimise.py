@@ -321,8 +321,9 @@ def _held(requirement: Requirement, columns: Floats, best: Values, n: int) -> He
 
 
 def _curve(tried: Tried) -> tuple[tuple[float, float, float], ...]:
-    """Return the values of a single decision with the goal and its error, ascending."""
-    known: list[Standing] = [tried.standing(each) for each in sorted(tried.columns)]
+    """Return the values of a single decision with the goal and its error, ascending; all over the same trials."""
+    n = min(map(tried.length, tried.columns))
+    known: list[Standing] = [tried.standing(each, n) for each in sorted(tried.columns)]
     return tuple(
         (each.candidate[0], tried.goal.sign * each.goal.value, each.goal.error)
         for each in known

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import openpyxl
 import pytest
-from crystal_ball_book import Asked, Drawn, Tied, read_parts, save, write_parts
+from crystal_ball_book import Asked, Decided, Drawn, Tied, read_parts, save, write_parts
 from fewer_sheets import keep_sheets
 from simulated import simulated
 
@@ -198,6 +198,17 @@ def test_dialogs_become_rows_and_what_cannot_be_read_is_still_refused(tmp_path):
         cell.value for row in sheet.iter_rows() for cell in row if cell.font.color and cell.font.color.rgb == "FFC00000"
     ]
     assert "Sheet1!B4" in red
+
+
+def test_decision_variables_become_rows_of_decisions(tmp_path):
+    path, loss = tmp_path / "book.xlsx", Drawn("S", "$B$2", "Loss", "Normal", {"Mean": 100.0, "StdDev": 15.0})
+    objects = [loss, Asked("S", "$B$5", "Kept", ""), Decided("S", "$B$3", "Share", (0.0, 1.0, 0.05))]
+    save(path, {"S": {"B2": 100, "B3": 0.25, "B5": "=B2*(1-B3)"}}, [objects])
+    (old,) = load(path).definitions.decisions
+    (new,) = converted(path)[1].definitions.decisions
+    assert (new.name, new.cell, new.between, new.listed) == (old.name, old.cell, None, False)
+    np.testing.assert_allclose(new.values, old.values, rtol=1e-12)
+    assert new.row.sheet != "S"
 
 
 def test_settings_are_written_with_the_precision_that_dialogs_ask_for(tmp_path):

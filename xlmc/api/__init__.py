@@ -5,9 +5,11 @@ What docs/python.md lists stays as it is from version to version.
 
 from __future__ import annotations
 
+from xlmc.analysis.studies.shown import Shown
 from xlmc.api.books import check, convert, replay, seek, verify
 from xlmc.api.models import Model, Simulation, load, model, open_run
 from xlmc.api.studies import compare, decide, fit, methods, optimise, screen, sensitivities, stability, uncertainty
+from xlmc.outputs.studies import StudyDocuments
 
 __all__ = [
     "Model",
@@ -30,3 +32,5 @@ __all__ = [
     "uncertainty",
     "verify",
 ]
+
+Shown.documents = StudyDocuments()

@@ -278,7 +278,7 @@ def _pairs(found: Fits) -> Table:
 
 
 def _as_json(found: Fits, source: str) -> dict[str, object]:
-    from xlmc.cli.study_output import estimate_json
+    from xlmc.outputs.studies.json_numbers import estimate_json
 
     return {
         "source": source,

@@ -2,9 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from functools import partial
-from math import isfinite, isnan
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -23,10 +20,7 @@ from xlmc.cli.options import (
 from xlmc.cli.study_output import STUDY_OF_A_RUN, conclude, give_out, study_options
 
 if TYPE_CHECKING:
-    from xlmc.analysis.studies.screening import AtEnds, Cost, Screening
     from xlmc.excel.own_functions import OwnFunctions
-    from xlmc.outputs.document.parts import Block, Table
-    from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["screen"]
 
@@ -91,6 +85,7 @@ def screen(
     from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
+    from xlmc.outputs.studies.screen import screen_report
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
@@ -112,7 +107,7 @@ def screen(
             jobs=jobs,
             tell=tell,
         )
-    report = _report(found)
+    report = screen_report(found)
     written = give_out(
         report,
         files.writers(report),
@@ -120,281 +115,3 @@ def screen(
         [f"{report.below.partition(':')[0]}: what it could do without", *report.blocks],
     )
     conclude(written, found.run)
-
-
-def _report(found: Screening) -> StudyReport:
-    from xlmc.montecarlo.statistics.number_text import count_text
-    from xlmc.outputs.document.parts import blocks_of
-    from xlmc.outputs.study_report import StudyReport
-
-    run = found.run
-    below = f"{run.model.workbook.name}: {found.runs} runs of {count_text(run.trials)} trials, seed {run.settings.seed}"
-    blocks = blocks_of([*_verdicts(found), *_tables(found), *_meaning(found)])
-    title = "What the book could do without"
-    return StudyReport(title, below, blocks, "Screening", partial(_as_json, found), run)
-
-
-def _tables(found: Screening) -> Iterator[Block]:
-    expected = [_size(each.size) for each in found.expected]
-    title = "Each assumption held at its base value, the least expected cost first"
-    yield _table(found, title, found.single, ("Held", _names(found.single)), ("Expected", expected))
-    if found.groups:
-        yield _table(found, "Correlated assumptions held at once", found.groups, ("Held", _names(found.groups)))
-    if found.sets:
-        yield _table(found, "Held at once, as asked", found.sets, ("Held", _names(found.sets)))
-    if found.ends:
-        yield _at_ends(found, found.ends)
-    if found.filters:
-        held = " with the assumptions named above held" if found.joint else ""
-        what = "filter and item of evidence" if _has_evidence(found) else "filter"
-        yield _table(found, f"Each {what} left out{held}", found.filters, ("Left out", _names(found.filters)))
-    for name in found.tolerances:
-        yield _of_forecast(found, name)
-
-
-def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> Table:
-    """Make a table of what each change costs. `first` are columns with headings."""
-    from xlmc.outputs.document.parts import Table
-
-    accepted = ["Accepted, %"] if found.run.model.filters else []  # without filters nothing can change it
-    headings = (*(heading for heading, _ in first), "Cost", *accepted)
-    rows = tuple(
-        (
-            *(column[index] for _, column in first),
-            "no number" if cost.lost else _size(cost.size),
-            *(_percent(cost) for _ in accepted),
-            cost.judgement.verdict.value,
-        )
-        for index, cost in enumerate(costs)
-    )
-    return Table(title, (*headings, "Verdict"), rows, tuple(range(1, len(headings))))
-
-
-def _at_ends(found: Screening, ends: Sequence[AtEnds]) -> Table:
-    """Make a table of what holding each assumption at an end of its range costs."""
-    from xlmc.montecarlo.statistics.number_text import number_text
-
-    pairs = [
-        (f"{each.name} = {number_text(value)}", cost)
-        for each in ends
-        for value, cost in zip(each.values, each.costs, strict=True)
-    ]
-    title = "Each of these held at an end of its range, its 2.5 % and 97.5 % points"
-    return _table(found, title, [cost for _, cost in pairs], ("Held", [name for name, _ in pairs]))
-
-
-def _has_evidence(found: Screening) -> bool:
-    return any(each.evidence is not None for each in found.run.model.filters)
-
-
-def _size(tolerances: float) -> str:
-    """Count a move in tolerances; infinite where the forecast does not vary and so has no tolerance."""
-    from xlmc.montecarlo.statistics.number_text import number_text
-
-    return number_text(tolerances, 2) if isfinite(tolerances) else "infinite"
-
-
-def _of_forecast(found: Screening, name: str) -> Table:
-    """Make a table of the number of a forecast that each change moves most, measured in its tolerance."""
-    from xlmc.analysis.studies.comparison.verdicts import amount
-    from xlmc.outputs.document.parts import Table
-
-    units = found.run[name].definition.units
-    rows = []
-    for cost in (*found.single, *found.groups, *found.sets, *found.filters):
-        number, size = _most_moved(found, cost, name)
-        change = dict(cost.forecasts[name].changes)[number]
-        rows.append(
-            (
-                ", ".join(cost.names),
-                number,
-                amount(number, change.difference, cost.forecasts[name].form),
-                "" if name in cost.lost else _size(size),
-            )
-        )
-    title = f"{name}{f', {units}' if units else ''}: what each moves most"
-    return Table(title, ("Held or left out", "Number", "Moves by", "Tolerances"), tuple(rows), (2, 3))
-
-
-def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
-    """Return the number of a forecast that moves most, and by how many tolerances."""
-    from xlmc.analysis.studies.comparison.tolerances import in_tolerances
-
-    each = cost.forecasts[name]
-    limits = each.tolerances(found.tolerances[name][0], found.chance)
-    sizes = {number: in_tolerances(change.difference, limits[number]) for number, change in each.changes}
-    number = max(sizes, key=sizes.__getitem__)
-    return number, sizes[number]
-
-
-def _tolerance(found: Screening, name: str) -> str:
-    """Return the tolerance of a forecast in words: `1 mph, and P(> 18) 1.2 points`."""
-    from xlmc.analysis.studies.comparison.verdicts import is_chance, points, tolerance_text
-
-    value, stated = found.tolerances[name]
-    result = found.run[name]
-    costs = (*found.single, *found.groups, *found.sets, *found.filters)
-    limits = costs[0].forecasts[name].tolerances(value, found.chance) if costs else {}
-    chances = [f"{number} {points(limit)}" for number, limit in limits.items() if is_chance(number)]
-    if isnan(value) or (costs and costs[0].forecasts[name].shares):
-        return ", ".join(chances)
-    text = f"{tolerance_text(value, result.form)} {result.definition.units}".rstrip()
-    return ", and ".join([text + ("" if stated else " (a tenth of the SD)"), *chances])
-
-
-def _names(costs: Sequence[Cost]) -> list[str]:
-    return [", ".join(cost.names) for cost in costs]
-
-
-def _percent(cost: Cost) -> str:
-    from xlmc.montecarlo.statistics import format_estimate
-
-    change = cost.acceptance.relative
-    return format_estimate(100.0 * change.value, None if change.error is None else 100.0 * change.error)
-
-
-def _acceptance_text(found: Screening, cost: Cost) -> str:
-    """How the share of accepted trials changes; nothing where no filter could change it."""
-    change = cost.acceptance
-    if not found.run.model.filters:
-        return ""
-    if not change.first_only + change.second_only:
-        return "; the same trials are accepted"
-    return f"; the acceptance changes by {_percent(cost)} % of itself"
-
-
-def _verdicts(found: Screening) -> Iterable[str]:
-    from xlmc.analysis.studies.comparison.verdicts import undecided_text
-    from xlmc.montecarlo.statistics.number_text import count_text, styled_text
-
-    if found.joint:
-        yield (
-            f"Not needed: {'; '.join(found.joint.names)}. With all of them held at their base values in one run, no "
-            f"number moves by more than {styled_text(found.joint.size, '.2f')} of its "
-            f"tolerance{_acceptance_text(found, found.joint)}."
-        )
-    else:
-        yield "Every assumption is needed, as far as these trials tell."
-    if found.only_alone:
-        yield f"Within the tolerance alone, but not surely together with those: {'; '.join(found.only_alone)}."
-    if found.ends is not None:
-        yield _ends_text([each.name for each in found.ends if each.free])
-    if found.unasked:
-        yield f"Judged by {'; '.join(found.tolerances)} only."
-    if found.idle:
-        yield f"No forecast or filter needs {'; '.join(found.idle)}."
-    if found.valueless:
-        yield (
-            f"Not judged, with an answer in fewer than two accepted trials: {'; '.join(found.valueless)}. What these "
-            "forecasts need is not known."
-        )
-    if found.baseless:
-        yield f"Not screened, because their cells are blank: {'; '.join(found.baseless)}."
-    if found.reduced:
-        yield (
-            f"{'Filters and evidence' if _has_evidence(found) else 'Filters'} that then make no difference here: "
-            f"{'; '.join(found.reduced.names)}. Without them no number moves by "
-            f"more than {styled_text(found.reduced.size, '.2f')} of its tolerance. A filter that "
-            "rejects the impossible may stay."
-        )
-    if found.undecided:
-        names = "; ".join(undecided_text(cost, found.run.trials) for cost in found.undecided)
-        yield f"Undecided at {count_text(found.run.trials)} trials, and therefore kept: {names}."
-
-
-def _ends_text(free: Sequence[str]) -> str:
-    if not free:
-        return (
-            "None of these may be anywhere in its range: held at one end at least, each of them changes an answer by "
-            "more than its tolerance, or it is undecided whether it does."
-        )
-    plural = len(free) > 1
-    return (
-        f"Not needed, wherever in {'their ranges they lie' if plural else 'its range it lies'}: {'; '.join(free)}. "
-        f"Held at either end, {'each alone, they move' if plural else 'it moves'} no number beyond its tolerance: no "
-        "other model, and no better measurement, has to give it."
-    )
-
-
-def _meaning(found: Screening) -> Iterable[str]:
-    from xlmc.montecarlo.statistics.number_text import count_text, number_text
-
-    if found.constant:
-        yield f"Formula cells that then do not vary: {', '.join(map(str, found.constant))}."
-    if found.dropped:
-        yield f"Formula cells that then are not needed: {', '.join(map(str, found.dropped))}."
-    yield f"Of {found.cells} formula cells that the book needs, {found.varying} then vary."
-    tolerances = "; ".join(f"{name} {_tolerance(found, name)}" for name in found.tolerances)
-    accepted = (
-        f"; acceptance {number_text(100 * found.acceptance_tolerance)} % of itself" if found.run.model.filters else ""
-    )
-    yield (
-        "Cost: the largest change of any number, divided by its tolerance; above 1 the answer changes. The numbers of "
-        "a forecast are its mean, SD, both ends of its central range, and the probability of being above its "
-        f"threshold where it has one; of yes/no answers and texts their shares. Tolerances: {tolerances}{accepted}."
-    )
-    yield (
-        f"{found.runs} runs of {count_text(found.run.trials)} trials, seed {found.run.settings.seed}, "
-        "over the same draws; ± is "
-        "the standard error of a change (Monte Carlo error). A verdict is given only where a change is at least three "
-        "errors away from the tolerance."
-    )
-
-
-def _as_json(found: Screening) -> dict[str, object]:
-    from xlmc.cli.study_output import estimate_json
-    from xlmc.montecarlo.statistics.estimate import finite
-
-    run = found.run
-    return {
-        "book": str(run.model.path),
-        "trials": run.trials,
-        "seed": run.settings.seed,
-        "acceptance": estimate_json(run.acceptance),
-        "tolerances": {
-            name: {"value": finite(value), "stated": stated} for name, (value, stated) in found.tolerances.items()
-        },
-        "chance_tolerance": found.chance,
-        "acceptance_tolerance": found.acceptance_tolerance,
-        "not_needed_by_any_cell": found.idle,
-        "without_base_value": found.baseless,
-        "forecasts_not_asked": found.unasked,
-        "forecasts_without_numbers": found.valueless,
-        "held_alone": [_entry(cost, found) for cost in found.single],
-        "correlated_held_at_once": [_entry(cost, found) for cost in found.groups],
-        "held_together": None if found.joint is None else _entry(found.joint, found),
-        "held_as_asked": [_entry(cost, found) for cost in found.sets],
-        "held_at_ends": None
-        if found.ends is None
-        else [
-            {"name": each.name, "at": value, "free": each.free, **_entry(cost, found)}
-            for each in found.ends
-            for value, cost in zip(each.values, each.costs, strict=True)
-        ],
-        "filters_left_out_alone": [_entry(cost, found) for cost in found.filters],
-        "filters_left_out_together": None if found.reduced is None else _entry(found.reduced, found),
-        "cells": {
-            "needed": found.cells,
-            "varying_then": found.varying,
-            "constant_then": [str(cell) for cell in found.constant],
-            "not_needed_then": [str(cell) for cell in found.dropped],
-        },
-        "runs": found.runs,
-    }
-
-
-def _entry(cost: Cost, found: Screening) -> dict[str, object]:
-    from xlmc.cli.study_output import acceptance_json, difference_json
-    from xlmc.montecarlo.statistics.estimate import finite
-
-    expected = {each.name: each.size for each in found.expected}
-    return {
-        "names": cost.names,
-        "expected_cost": finite(expected.get(cost.names[0])) if len(cost.names) == 1 else None,
-        "cost": finite(cost.size),
-        "verdict": cost.judgement.verdict.value,
-        "decided_by": cost.judgement.largest,
-        "trials_needed": finite(cost.judgement.times * found.run.trials),
-        "acceptance": acceptance_json(cost.acceptance),
-        "forecasts": {name: difference_json(each) for name, each in cost.forecasts.items()},
-    }

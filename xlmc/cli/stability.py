@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,13 +12,10 @@ from xlmc.cli.options import FilePath, WholeNumber, functions_option, jobs_optio
 from xlmc.cli.study_output import NOT_TO_BE_USED, STUDY_OF_A_RUN, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
-from xlmc.errors import capitalised
 
 if TYPE_CHECKING:
-    from xlmc.analysis.studies.stability import CellDigits, Finding, Stability
+    from xlmc.analysis.studies.stability import Finding, Stability
     from xlmc.excel.own_functions import OwnFunctions
-    from xlmc.outputs.document.parts import Table
-    from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["stability"]
 
@@ -52,6 +47,7 @@ def stability(
     from xlmc.cli.printing import use_number_style, warnings
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
+    from xlmc.outputs.studies.stability import stability_report
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
@@ -60,7 +56,7 @@ def stability(
     files.check()
     with step_line(quiet) as tell:
         found = study.stability(model, trials=trials, seed=seed, jobs=jobs, tell=tell)
-    report = _report(found, all_cells)
+    report = stability_report(found, all_cells)
     written = write_files(files.writers(report))
     if as_json:
         say_json(report.json())
@@ -73,32 +69,22 @@ def stability(
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
 
-_LEVELS = {"WRONG": "Wrong", "DOUBTFUL": "Doubtful", "NOTE": "Note"}
-
-
 def _show(found: Stability, all_cells: bool) -> None:
-    say(f"{found.run.model.workbook.name}: {_count(found.findings)}\n")
+    from xlmc.outputs.studies.stability import count, sentences
+
+    say(f"{found.run.model.workbook.name}: {count(found.findings)}\n")
     for number, finding in enumerate(found.findings, start=1):
         _show_finding(number, finding)
     _show_cells(found, all_cells)
-    for sentence in _sentences(found):
+    for sentence in sentences(found):
         say(paragraph(sentence))
 
 
-def _count(findings: Sequence[Finding]) -> str:
-    levels = [finding.level.name for finding in findings]
-    counts = {word.lower(): levels.count(level) for level, word in _LEVELS.items() if level in levels}
-    parts = [f"{count} {word}{'s' * (word == 'note' and count > 1)}" for word, count in counts.items()]
-    return (
-        f"{len(levels)} finding{'s' * (len(levels) != 1)}: {', '.join(parts)}"
-        if parts
-        else "no finding: no cell loses digits, and none gives a misleading number"
-    )
-
-
 def _show_finding(number: int, finding: Finding) -> None:
-    say(_finding_heading(number, finding, _cut(finding.formula)))
-    for text in _finding_sentences(finding):
+    from xlmc.outputs.studies.stability import finding_heading, finding_sentences
+
+    say(finding_heading(number, finding, _cut(finding.formula)))
+    for text in finding_sentences(finding):
         say(paragraph(text, indent="   "))
     if finding.instead:
         say(f"   Instead: {finding.instead}")
@@ -110,138 +96,6 @@ def _cut(formula: str, width: int = 90) -> str:
 
 
 def _show_cells(found: Stability, all_cells: bool) -> None:
-    show([_cells(found, all_cells)])
+    from xlmc.outputs.studies.stability import cells
 
-
-def _report(found: Stability, all_cells: bool) -> StudyReport:
-    from xlmc.montecarlo.statistics.number_text import count_text
-    from xlmc.outputs.document.parts import blocks_of
-    from xlmc.outputs.study_report import StudyReport
-
-    findings = [text for number, one in enumerate(found.findings, start=1) for text in _finding_texts(number, one)]
-    blocks = blocks_of(
-        [
-            f"{_count(found.findings).capitalize()}.",
-            *findings,
-            _cells(found, all_cells),
-            *_sentences(found),
-        ]
-    )
-    below = f"{found.run.model.workbook.name}: {count_text(found.run.trials)} trials, seed {found.run.settings.seed}"
-    return StudyReport("Can the digits be trusted?", below, blocks, "Stability", partial(_as_json, found), found.run)
-
-
-def _finding_texts(number: int, finding: Finding) -> Iterator[str]:
-    yield _finding_heading(number, finding, finding.formula)
-    yield from _finding_sentences(finding)
-    if finding.instead:
-        yield f"Instead: {finding.instead}"
-
-
-def _finding_heading(number: int, finding: Finding, formula: str) -> str:
-    name = f" {finding.name}" if finding.name else ""
-    return f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {formula}"
-
-
-def _finding_sentences(finding: Finding) -> Iterator[str]:
-    yield from (f"{capitalised(text)}." for text in (finding.what, finding.effect))
-    if finding.where:
-        yield f"Where: {'; '.join(map(str, finding.where))}"
-
-
-def _cells(found: Stability, all_cells: bool) -> Table:
-    from xlmc.montecarlo.statistics.number_text import number_text
-    from xlmc.outputs.document.parts import Table
-
-    model = found.run.model
-    targets = {row.cell for row in model.forecasts} | {row.cell for row in model.filters}
-    rows = tuple(
-        (
-            cell.name or str(cell.cell),
-            *([str(cell.cell)] if all_cells else []),
-            number_text(cell.amplification, 3),
-            number_text(cell.most, 3),
-            cell.through,
-            number_text(cell.rounding, 1),
-            number_text(cell.excess, 2),
-        )
-        for cell in found.cells
-        if all_cells or cell.cell in targets
-    )
-    headings = (
-        "Cell",
-        *(["Address"] if all_cells else []),
-        "Amplifies",
-        "In 1 of 100",
-        "Through",
-        "Rounding",
-        "Excess",
-    )
-    first = 3 if all_cells else 2
-    return Table("What cells amplify and lose", headings, rows, (first - 1, first, first + 2, first + 3))
-
-
-def _sentences(found: Stability) -> Iterator[str]:
-    from xlmc.montecarlo.statistics.number_text import count_text
-
-    yield (
-        "Amplifies: if each assumption changes by 1 %, the cell changes by up to so many percent, in the median trial "
-        "and in one trial of 100. Through: the assumption that causes most of it. No other form of a formula makes it "
-        "less. Rounding: the largest error by rounding, as a share of the central range or of the value. Excess: how "
-        "many times larger that error is than the effect of rounding the assumptions alone; up to 7 in sound formulas."
-    )
-    trials = f"{count_text(found.points)} trial{'s' * (found.points != 1)}"
-    yield (
-        f"Examined: {trials} of a run of {count_text(found.run.trials)}, seed "
-        f"{found.run.settings.seed}, among them the base "
-        f"case and the ends of all ranges; {count_text(found.recomputed)} were computed again with 50 digits."
-    )
-    for cell, functions in found.unchecked:
-        yield f"Not checked with 50 digits: {', '.join(functions)} in {cell}."
-
-
-def _as_json(found: Stability) -> dict[str, object]:
-    return {
-        "book": str(found.run.model.path),
-        "trials": found.run.trials,
-        "seed": found.run.settings.seed,
-        "points": found.points,
-        "recomputed": found.recomputed,
-        "findings": [_finding_json(finding) for finding in found.findings],
-        "cells": [_cell_json(cell) for cell in found.cells],
-        "unchecked": [{"cell": str(cell), "functions": list(names)} for cell, names in found.unchecked],
-    }
-
-
-def _finding_json(finding: Finding) -> dict[str, object]:
-    from xlmc.montecarlo.statistics.estimate import finite
-
-    return {
-        "level": finding.level.name.lower(),
-        "kind": finding.kind,
-        "cell": str(finding.cell),
-        "name": finding.name,
-        "formula": finding.formula,
-        "what": finding.what,
-        "effect": finding.effect,
-        "where": [
-            {"assumption": one.name, "low": one.low, "high": one.high, "units": one.units} for one in finding.where
-        ],
-        "instead": finding.instead,
-        "size": finite(finding.size),
-    }
-
-
-def _cell_json(cell: CellDigits) -> dict[str, object]:
-    from xlmc.montecarlo.statistics.estimate import finite
-
-    return {
-        "cell": str(cell.cell),
-        "name": cell.name,
-        "amplification": finite(cell.amplification),
-        "amplification_1_of_100": finite(cell.most),
-        "through": cell.through,
-        "rounding": finite(cell.rounding),
-        "excess": finite(cell.excess),
-        "checked": cell.checked,
-    }
+    show([cells(found, all_cells)])

@@ -14,9 +14,7 @@ from xlmc.cli.terminal import say_json
 from xlmc.cli.writing import Written, write_files
 
 if TYPE_CHECKING:
-    from xlmc.analysis.studies.comparison import Acceptance, Change, Difference
     from xlmc.montecarlo.simulation.simulation import RunResult
-    from xlmc.montecarlo.statistics import Estimate
     from xlmc.outputs.document.parts import Block
     from xlmc.outputs.study_report import StudyReport
 
@@ -32,10 +30,7 @@ __all__ = [
     "NOT_TO_BE_USED",
     "STUDY",
     "STUDY_OF_A_RUN",
-    "acceptance_json",
     "conclude",
-    "difference_json",
-    "estimate_json",
     "give_out",
     "study_options",
 ]
@@ -105,48 +100,3 @@ def conclude(written: Written, run: RunResult, doubts: Sequence[str] = ()) -> No
     written.check()
     if reasons:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
-
-
-def estimate_json(estimate: Estimate) -> dict[str, float | None]:
-    """Value and standard error."""
-    from xlmc.montecarlo.statistics.estimate import finite
-
-    return {"value": finite(estimate.value), "error": finite(estimate.error)}
-
-
-def difference_json(found: Difference) -> dict[str, object]:
-    """Return the four numbers of a forecast in two runs, and the distances; of texts their shares."""
-    from xlmc.montecarlo.statistics.estimate import finite
-
-    shares = {"shares": {label: _change(each) for label, each in found.shares.items()}} if found.shares else {}
-    return {
-        **shares,
-        "mean": _change(found.mean),
-        "standard_deviation": _change(found.standard_deviation),
-        "central_range": {"share": found.share, "low": _change(found.low), "high": _change(found.high)},
-        **({} if found.above is None else {"above_threshold": {"threshold": found.threshold, **_change(found.above)}}),
-        "kolmogorov": estimate_json(found.kolmogorov),
-        "wasserstein_1": estimate_json(found.wasserstein),
-        "largest_in_one_trial": finite(found.largest),
-        "root_mean_square_in_one_trial": finite(found.typical),
-    }
-
-
-def _change(change: Change) -> dict[str, object]:
-    return {
-        "first": estimate_json(change.first),
-        "second": estimate_json(change.second),
-        "difference": estimate_json(change.difference),
-    }
-
-
-def acceptance_json(found: Acceptance) -> dict[str, object]:
-    """How many trials both accept, and each alone."""
-    return {
-        "both": found.both,
-        "first_only": found.first_only,
-        "second_only": found.second_only,
-        "first": estimate_json(found.first),
-        "second": estimate_json(found.second),
-        "relative_change": estimate_json(found.relative),
-    }

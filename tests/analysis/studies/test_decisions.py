@@ -119,11 +119,11 @@ def test_an_impossible_combination_does_not_stop_the_others(book, tmp_path):
 @pytest.mark.parametrize(
     ("row", "message", "where"),
     [
-        (["Order", "=Model!B2", 1, 2, 1, None, None], "is a formula", "Decisions!A2"),
-        (["Order", "=Inputs!B2", 1, 2, 1, None, None], "an assumption", "Decisions!A2"),
+        (["Order", "=Model!B2", 1, 2, 1, None, None], "holds a formula", "Decisions!A2"),
+        (["Order", "=Inputs!B2", 1, 2, 1, None, None], "is drawn or solved for", "Decisions!A2"),
         (["Order", "=Inputs!B5", 2, 1, 1, None, None], "there are no values", "Decisions!C2"),
         (["Order", "=Inputs!B5", 1, 2, 1e-9, None, None], "are more than 100,000", "Decisions!E2"),
-        (["Order", "=Inputs!B5", None, 2, None, None, None], "has no values", "Decisions!A2"),
+        (["Order", "=Inputs!B5", None, 2, None, None, None], "has no Low", "Decisions!C2"),
         (["Order", "=Inputs!B5", 1, None, None, "1; 2", None], "Values and Low are both given", "Decisions!C2"),
         (["Order", "=Inputs!B5", None, None, None, "one; two", None], "no list of numbers", "Decisions!F2"),
     ],

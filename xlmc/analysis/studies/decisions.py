@@ -14,6 +14,7 @@ from typing import Final, TypedDict
 
 from xlmc.analysis.studies.comparison.variations import names_of
 from xlmc.analysis.studies.scenario_answers import ForecastAnswer, ScenarioAnswers, answers_of, model_of, run_scenario
+from xlmc.analysis.studies.shown import Shown
 from xlmc.errors import DefinitionError, SimulationError, XlmcError
 from xlmc.montecarlo.definitions.definitions import Decision
 from xlmc.montecarlo.definitions.scenarios import Scenario, Typed
@@ -93,8 +94,8 @@ class Best:
         return abs(ahead.value) < _SURE * (ahead.error or 0.0)
 
 
-@dataclass(frozen=True, slots=True)
-class Decided:
+@dataclass(frozen=True, slots=True, repr=False)
+class Decided(Shown):
     """The answers for all combinations.
 
     Attributes:

@@ -36,6 +36,7 @@ from xlmc.analysis.studies.comparison.tolerances import (
     read_tolerances,
 )
 from xlmc.analysis.studies.comparison.variations import names_of, with_changes, with_plain_sampling
+from xlmc.analysis.studies.shown import Shown
 from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
@@ -112,8 +113,8 @@ class AtEnds:
         return all(cost.judgement.verdict is Verdict.WITHIN for cost in self.costs)
 
 
-@dataclass(frozen=True, slots=True)
-class Screening:
+@dataclass(frozen=True, slots=True, repr=False)
+class Screening(Shown):
     """What a book could do without.
 
     Attributes:

@@ -15,6 +15,7 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.analysis.studies.shown import Shown
 from xlmc.engine.engines import ENGINES
 from xlmc.engine.roots import find_roots
 from xlmc.errors import DefinitionError, SimulationError
@@ -45,8 +46,8 @@ _DRAWN: Final = 201
 """Points of the curve."""
 
 
-@dataclass(frozen=True, slots=True)
-class Found:
+@dataclass(frozen=True, slots=True, repr=False)
+class Found(Shown):
     """What a search found.
 
     Attributes:

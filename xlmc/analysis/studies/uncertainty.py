@@ -26,6 +26,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.comparison.variations import names_of, with_plain_sampling
+from xlmc.analysis.studies.shown import Shown
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.forms import Form
@@ -157,8 +158,8 @@ class ForecastBands:
         return [*dict.fromkeys((*numbers[:1], *numbers[-1:])), *(band for band in self.bands if band.is_share)]
 
 
-@dataclass(frozen=True, slots=True)
-class TwoLoops:
+@dataclass(frozen=True, slots=True, repr=False)
+class TwoLoops(Shown):
     """What two loops found.
 
     Attributes:

@@ -64,11 +64,15 @@ class CellCheck:
         return relative_difference(self.expected, self.got)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Verification:
     """The formula cells of a workbook, checked."""
 
     cells: tuple[CellCheck, ...]
+
+    def __repr__(self) -> str:
+        counts = ", ".join(f"{self.count(status):,} {status.value}" for status in Status if self.count(status))
+        return f"{len(self.cells):,} formula cells: {counts or 'nothing to check'}"
 
     def count(self, status: Status) -> int:
         """How many cells have that status."""

@@ -15,13 +15,14 @@ __all__ = ["formats_of", "forms_of"]
 
 
 def formats_of(workbook: Workbook, cells: Iterable[Cell]) -> list[str]:
-    """Return the number format of each cell; `General` where it has none or the file does not say."""
-    places = [(workbook.sheets[cell.sheet].part, cell.a1) for cell in cells]
+    """Return the number format of each cell; `General` where it has none, the file does not say, or a workbook that
+    feeds this one has the cell.
+    """
+    wanted = [*cells]
+    places = {cell: (workbook.sheets[cell.sheet].part, cell.a1) for cell in wanted if cell.sheet in workbook.sheets}
     parts = workbook.parts or workbook.origin
-    if not parts:
-        return ["General"] * len(places)
-    found = cell_formats(parts, roles(parts).workbook, places)
-    return [found[place] for place in places]
+    found = cell_formats(parts, roles(parts).workbook, places.values()) if parts else {}
+    return [found[places[cell]] if parts and cell in places else "General" for cell in wanted]
 
 
 def forms_of(workbook: Workbook, cells: Iterable[Cell]) -> list[Form]:

@@ -26,6 +26,7 @@ from xlmc.analysis.studies.comparison.tolerances import (
     read_tolerances,
 )
 from xlmc.analysis.studies.comparison.variations import with_plain_sampling
+from xlmc.analysis.studies.shown import Shown
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.units import factor_between
@@ -113,8 +114,8 @@ class ForecastComparison:
         return self.judgement.verdict is Verdict.WITHIN and apart > tolerance
 
 
-@dataclass(frozen=True, slots=True)
-class Comparison:
+@dataclass(frozen=True, slots=True, repr=False)
+class Comparison(Shown):
     """Two books of one scene over the same trials.
 
     Attributes:

@@ -94,7 +94,7 @@ class Fitted:
     ks: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Fitting:
     """All families that could be fitted, the best first.
 
@@ -112,6 +112,13 @@ class Fitting:
     fits: tuple[Fitted, ...]
     unfit: Mapping[str, str]
     cautions: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        lines = [f"{self.n:,} values as {self.kind}, the best by {self.by.upper()} first:"]
+        for each in self.fits[:5]:
+            numbers = ", ".join(f"{heading} {value:.6g}" for heading, value in each.parameters.items())
+            lines.append(f"  {each.name}: {numbers}; {self.by.upper()} {getattr(each, self.by):.6g}")
+        return "\n".join([*lines, *self.cautions])
 
 
 def fit(values: ArrayLike, *, kind: str | None = None, by: str = "aic", errors: bool = True) -> Fitting:

@@ -25,6 +25,7 @@ from xlmc.analysis.studies.methods.importance_grid import ImportanceGrid
 from xlmc.analysis.studies.methods.optimised import Optimised, widen_bounds
 from xlmc.analysis.studies.methods.sampled import ENGINE_VARIANTS, MONTE_CARLO, SAMPLERS, Sampled
 from xlmc.analysis.studies.methods.surrogate import Surrogate
+from xlmc.analysis.studies.shown import Shown
 from xlmc.errors import FormulaError, SimulationError
 from xlmc.montecarlo.definitions.amounts import as_tolerance
 from xlmc.montecarlo.definitions.forms import span_text
@@ -75,8 +76,8 @@ _PATIENCE: Final = 1.0
 Tell = Callable[[str], None]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Study:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Study(Shown):
     """What was measured.
 
     Attributes:

@@ -21,6 +21,7 @@ from xlmc.analysis.studies.optimising.measures import Goal, Measured, Reader, Re
 from xlmc.analysis.studies.optimising.search import search
 from xlmc.analysis.studies.optimising.selection import Rival, indifference_of, judged, leader, race, rivals_of
 from xlmc.analysis.studies.scenario_workbook import edited_workbook
+from xlmc.analysis.studies.shown import Shown
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.definitions.definitions import Decision
@@ -83,8 +84,8 @@ class Held:
         return self.requirement.slack.exact
 
 
-@dataclass(frozen=True, slots=True)
-class Optimised:
+@dataclass(frozen=True, slots=True, repr=False)
+class Optimised(Shown):
     """The best candidate that was tried, and how sure that is.
 
     Attributes:

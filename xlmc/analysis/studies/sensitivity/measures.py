@@ -233,7 +233,7 @@ class FilterLimit:
     loosened_trials: int
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Sensitivities:
     """What the answers of a run depend on.
 
@@ -263,6 +263,13 @@ class Sensitivities:
     omitted_limits: int
     varying_limits: tuple[str, ...]
     omitted_forecasts: int = 0
+
+    def __repr__(self) -> str:
+        lines = []
+        for each in self.forecasts:
+            shares = "; ".join(f"{one.assumption} {one.explained.value:.1%}" for one in each.influences[:5])
+            lines.append(f"{each.forecast}: {shares or 'no assumption moves it'}")
+        return "\n".join(["Variance explained, the largest first", *lines])
 
     def __getitem__(self, forecast: str) -> ForecastSensitivity:
         """One forecast, by name whatever its case.

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
+from xlmc.analysis.studies.shown import Shown
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.statistics.number_text import number_text
 
@@ -105,8 +106,8 @@ class CellDigits:
     checked: bool
 
 
-@dataclass(frozen=True, eq=False)
-class Stability:
+@dataclass(frozen=True, eq=False, repr=False)
+class Stability(Shown):
     """All that was found in a workbook.
 
     Attributes:

@@ -1,0 +1,171 @@
+"""What `xlmc decide` found, as a document: the answers for every combination of decisions."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.decisions import Decided
+    from xlmc.outputs.document.parts import Block, Figure, Table
+    from xlmc.outputs.study_report import StudyReport
+
+__all__ = ["decide_report"]
+
+
+_MOST_LINES = 6
+
+
+def decide_report(found: Decided) -> StudyReport:
+    """Make the report."""
+    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.outputs.document.parts import blocks_of
+    from xlmc.outputs.study_report import StudyReport
+
+    run, count = found.run, len(found.combinations) + len(found.impossible)
+    below = (
+        f"{run.model.workbook.name}: {count_text(count)} combination{'s' * (count != 1)} of "
+        f"{', '.join(each.name for each in found.decisions)}, {count_text(run.trials)} trials each, "
+        f"seed {run.settings.seed}"
+    )
+    blocks = blocks_of([*_sentences(found), *_blocks(found), _MEANING])
+    title = "What each decision gives"
+    return StudyReport(title, below, blocks, "Decisions", partial(_as_json, found), run)
+
+
+_MEANING = (
+    "Each combination is run over the same random numbers, so that differences come from the decisions, and their ± "
+    "from the differences trial by trial. Difference: to the workbook as it is. ± is the standard error "
+    "(Monte Carlo error)."
+)
+
+
+def _sentences(found: Decided) -> Iterator[str]:
+    from xlmc.analysis.studies.decisions import of_forecast
+
+    names = " and ".join(each.name for each in found.decisions)
+    same = [each.name for each in found.run.model.forecasts if not found.does_matter(each.name)]
+    for forecast in found.run.model.forecasts:
+        if forecast.name in same:
+            continue
+        for least, word in ((False, "largest"), (True, "smallest")):
+            best = found.best(forecast.name, least=least)
+            if best is None:
+                yield f"{forecast.name} is a number with none of them."
+                break
+            answer = of_forecast(found.base, forecast.name)
+            share = "probability" if answer.text is None else f"share of “{answer.text}”"
+            form, what = answer.form, "mean" if answer.has_range else share
+            units = f" {forecast.units}" if forecast.units else ""
+            mean = f"{form.estimate(best.mean)}{units}"
+            text = f"The {what} of {forecast.name} is {word}, {mean}, with {best.combination.answers.name}"
+            if best.next is None or best.ahead is None:
+                yield f"{text}."
+                break
+            if not best.ahead.value and not best.ahead.error:
+                yield f"{text}, and the same with {best.next.answers.name}."
+                continue
+            side = "below" if least else "above"
+            ahead = form.spread(best.ahead).lstrip("-")
+            doubt = "" if best.is_sure else ", and these trials cannot tell the two apart"
+            yield f"{text}; that is {ahead} {side} the next, {best.next.answers.name}{doubt}."
+    if same:
+        are = "are" if len(found.decisions) > 1 else "is"
+        yield f"Whatever {names} {are}, these stay as they are: {'; '.join(same)}."
+
+
+def _blocks(found: Decided) -> Iterator[Block]:
+    for index, answer in enumerate(found.base.forecasts):
+        if not found.does_matter(answer.forecast.name):
+            continue
+        yield _table(found, index)
+        if len(found.decisions) < 3:
+            figure = _trend(found, index)
+            if figure is not None:
+                yield figure
+
+
+def _table(found: Decided, index: int) -> Table:
+    from xlmc.montecarlo.statistics.number_text import exact_text
+    from xlmc.outputs.document.parts import Table
+    from xlmc.outputs.scenario_tables import answer_heads, answer_rows
+
+    answers = [found.base, *(each.answers for each in found.combinations)]
+    decisions = [", ".join(filter(None, (each.name, each.units))) for each in found.decisions]
+    values = [(found.base.name, *[""] * (len(decisions) - 1))]
+    values += [tuple(map(exact_text, each.values)) for each in found.combinations]
+    heads = (*decisions, *answer_heads(answers, index)[1:])
+    rows = tuple((*at, *row[1:]) for at, row in zip(values, answer_rows(answers, index), strict=True))
+    return Table(answers[0].forecasts[index].title, heads, rows, tuple(range(len(heads))))
+
+
+def _trend(found: Decided, index: int) -> Figure | None:
+    """Draw the means over the values of the first decision: of two a line for each value of the second."""
+    from xlmc.montecarlo.statistics.number_text import exact_text
+    from xlmc.outputs.document.parts import Chart, Figure, Line, Lines
+
+    first, *others = found.decisions
+    answer = found.base.forecasts[index]
+    points = [(each.values, each.answers.forecasts[index]) for each in found.combinations]
+    if len(first.values) < 2 or len(points) < 2:
+        return None
+    if others:
+        (second,) = others
+        lines = [
+            (f"{second.name} = {exact_text(at)}", [(v[0], a.mean.value, a.mean.error) for v, a in points if v[1] == at])
+            for at in second.values[:_MOST_LINES]
+        ]
+    else:
+        ends = ("low", "high") if answer.has_range else ()
+        lines = [("Mean", [(v[0], a.mean.value, a.mean.error) for v, a in points])]
+        lines += [
+            (f"Central range, {end} end", [(v[0], getattr(a, end).value, None) for v, a in points]) for end in ends
+        ]
+    drawn = tuple(
+        Line(name, tuple(sorted(each for each in those if each[1] == each[1])))
+        for name, those in lines  # no NaN
+    )
+    drawn = tuple(line for line in drawn if len(line.points) > 1)
+    if not drawn:
+        return None
+    data = Lines(drawn, answer.title, dots=True, form_upwards=answer.form)
+    across = f"{first.name}, {first.units}" if first.units else first.name
+    said = f"{answer.forecast.name} for the values of {' and '.join(each.name for each in found.decisions)}"
+    return Figure(Chart("", across, data, said), said)
+
+
+def _as_json(found: Decided) -> dict[str, object]:
+    from xlmc.outputs.json_document import scenario_json
+
+    run = found.run
+    return {
+        "book": str(run.model.path),
+        "trials": run.trials,
+        "seed": run.settings.seed,
+        "decisions": [
+            {"name": each.name, "cell": str(each.cell), "units": each.units, "values": each.values}
+            for each in found.decisions
+        ],
+        "as_it_is": scenario_json(found.base),
+        "combinations": [{"values": each.values, **scenario_json(each.answers)} for each in found.combinations],
+        "best": [_best_json(found, each.name) for each in run.model.forecasts],
+        "impossible": [{"values": values, "why": why} for values, why in found.impossible.items()],
+    }
+
+
+def _best_json(found: Decided, forecast: str) -> dict[str, object]:
+    """Return the combinations with the largest and the smallest mean of a forecast, and how far the next one lies."""
+    from xlmc.outputs.studies.json_numbers import estimate_json
+
+    told: dict[str, object] = {"forecast": forecast}
+    for name, least in (("largest", False), ("smallest", True)):
+        best = found.best(forecast, least=least)
+        told[name] = best and {
+            "values": best.combination.values,
+            "mean": estimate_json(best.mean),
+            "next": best.next and best.next.values,
+            "ahead": best.ahead and estimate_json(best.ahead),
+            "is_sure": best.is_sure,
+        }
+    return told

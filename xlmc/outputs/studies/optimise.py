@@ -1,0 +1,218 @@
+"""What `xlmc optimise` found, as a document: the best decisions, and how sure that is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.optimising import Held, Optimised, Rival
+    from xlmc.outputs.document.parts import Block
+    from xlmc.outputs.study_report import StudyReport
+
+__all__ = ["optimise_report"]
+
+
+def optimise_report(found: Optimised, again: str = "") -> StudyReport:
+    """Make the report.
+
+    Args:
+        found: what was found.
+        again: the command that gives the same again; none where no command was typed.
+    """
+    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.outputs.document.parts import Code, Paragraph, blocks_of
+    from xlmc.outputs.study_report import StudyReport
+
+    run = found.run
+    named = ", ".join(each.name for each in found.decisions)
+    below = (
+        f"{run.model.workbook.name}: {count_text(found.tried)} candidate{'s' * (found.tried != 1)} for {named}, "
+        f"{count_text(found.trials)} trials in all; {count_text(run.trials)} fresh ones of the best, "
+        f"seed {run.settings.seed}"
+    )
+    repeated: list[Block] = [Paragraph("To repeat it:", "small"), Code(again)] if again else []
+    blocks = [*_sentences(found), *_blocks(found), _meaning(found), *repeated]
+    title = f"The {found.goal.words}"
+    return StudyReport(title, below, blocks_of(blocks), "Optimum", partial(_as_json, found, again), run)
+
+
+def _with_values(found: Optimised, values: tuple[float, ...]) -> str:
+    from xlmc.montecarlo.statistics.number_text import exact_text
+
+    return ", ".join(f"{each.name} = {exact_text(at)}" for each, at in zip(found.decisions, values, strict=True))
+
+
+def _percent(share: float) -> str:
+    """Write a confidence, rounded down.
+
+    >>> [_percent(share) for share in (0.951, 0.99999, 0.02)]
+    ['95.1 %', 'more than 99.9 %', '2 %']
+    """
+    from xlmc.montecarlo.statistics.number_text import number_text
+
+    if share > 0.999:
+        return "more than 99.9 %"
+    return f"{number_text(int(share * 1000.0) / 10.0)} %"
+
+
+def _small(found: Optimised) -> str:
+    from xlmc.montecarlo.statistics.number_text import number_text
+
+    measure = found.goal.measure
+    if measure.form.factor != 1.0:
+        return f"{number_text(found.indifference * measure.form.factor)} percentage points"
+    text = measure.form.width(found.indifference)
+    return f"{text} {measure.units}" if measure.units else text
+
+
+def _sentences(found: Optimised) -> Iterator[str]:
+    from xlmc.montecarlo.statistics.number_text import count_text
+
+    measure = found.goal.measure
+    extreme = "largest" if found.goal.maximise else "smallest"
+    best = _with_values(found, found.best)
+    if math.isnan(found.found.value):
+        yield f"{_capital(measure.text)} is a number with none of the {found.tried:,} candidates that were tried."
+        return
+    yield f"{_capital(measure.text)} is {extreme}, {measure.shown(found.found)}, with {best}."
+    for each in found.held:
+        yield _held_text(each)
+    others = "no other that was tried" if not found.held else "no other that was tried and meets this as surely"
+    among = f"Of {count_text(found.tried)} candidates" if found.tried > 1 else "Of one candidate"
+    yield (
+        f"{among}, {others} is better by more than {_small(found)}, a difference that does not matter here: "
+        f"{_percent(found.confidence)} confidence."
+    )
+    better = [each for each in found.rivals if each.meets and each.told_apart and each.ahead > found.indifference]
+    for rival in better[:1]:
+        yield f"Fresh trials show {_with_values(found, rival.candidate)} to be better: give the search more --runs."
+    alike = [each for each in found.rivals if each.meets and not each.told_apart]
+    if alike:
+        named = "; ".join(_with_values(found, each.candidate) for each in alike[:4])
+        more = f"; and {len(alike) - 4} more" if len(alike) > 4 else ""
+        yield f"These trials cannot tell it from {named}{more}."
+    if found.as_it_is is not None:
+        own = "no number" if math.isnan(found.as_it_is.value) else measure.shown(found.as_it_is)
+        yield f"With the workbook's own decisions {measure.text} is {own}."
+    if found.ended:
+        yield f"The search ended early, because {found.ended}: this is the best that was found by then."
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
+
+
+def _held_text(each: Held) -> str:
+    left, requirement = each.requirement.left, each.requirement
+    shown = left.shown(each.found)
+    if each.exact:
+        return f"{requirement.text}: {'met' if each.chance > 0.5 else 'missed'}, {shown}."
+    if each.chance <= 0.5:
+        return f"{requirement.text} fails: {shown}."
+    return f"{requirement.text} holds with {_percent(each.chance)} confidence: {shown}."
+
+
+def _blocks(found: Optimised) -> Iterator[Block]:
+    from xlmc.montecarlo.statistics.number_text import exact_text
+    from xlmc.outputs.document.parts import Chart, Figure, Line, Lines, Table
+
+    own = [found.run.model.workbook.content(each.cell).value for each in found.decisions]
+    assert len(own) == len(found.best)
+    rows = [
+        (each.name, exact_text(value), each.units, str(each.cell))
+        for each, value in zip(found.decisions, found.best, strict=True)
+    ]
+    yield Table("The best decisions", ("Decision", "Value", "Units", "Cell"), tuple(rows), (1,))
+    if found.held:
+        stand = [
+            (
+                each.requirement.text,
+                each.requirement.left.shown(each.found),
+                "" if each.exact else _percent(each.chance),
+            )
+            for each in found.held
+        ]
+        yield Table("What is required", ("Requirement", "Found", "Holds with"), tuple(stand), (1, 2))
+    if found.rivals:
+        heads = (*(each.name for each in found.decisions), "Better by", "Told apart", "Meets the requirements")
+        heads = heads if found.held else heads[:-1]
+        lines = [_rival_row(found, each)[: len(heads)] for each in found.rivals]
+        yield Table("Others that come near", heads, tuple(lines), tuple(range(len(found.decisions) + 1)))
+    if len(found.curve) > 1:
+        (decision,) = found.decisions
+        across = f"{decision.name}, {decision.units}" if decision.units else decision.name
+        said = f"{found.goal.measure.text} for the values of {decision.name} that were tried"
+        lines_drawn = Lines((Line(_capital(found.goal.measure.text), found.curve),), _axis(found), now=found.best[0])
+        yield Figure(Chart("", across, lines_drawn, said), said)
+
+
+def _axis(found: Optimised) -> str:
+    measure = found.goal.measure
+    return f"{measure.text}, {measure.units}" if measure.units else measure.text
+
+
+def _rival_row(found: Optimised, each: Rival) -> tuple[str, ...]:
+    from xlmc.montecarlo.statistics import Estimate
+    from xlmc.montecarlo.statistics.number_text import exact_text
+
+    form = found.goal.measure.form
+    sign = "+" if each.ahead > 0.0 else ""
+    ahead = f"{sign}{form.spread(Estimate(each.ahead, each.error))}"
+    apart = "yes" if each.told_apart else "no"
+    return (*map(exact_text, each.candidate), ahead, apart, "yes" if each.meets else "no")
+
+
+def _meaning(found: Optimised) -> str:
+    return (
+        f"The candidates come from {found.how}, over random numbers that all share (seed {found.search_seed}); what is "
+        "told of the best comes from fresh ones, so that being chosen does not make it look better. It is what `xlmc "
+        "simulate` gives of the workbook with these decisions typed in. ± is the standard error (Monte Carlo error)."
+    )
+
+
+def _as_json(found: Optimised, again: str) -> dict[str, object]:
+    from xlmc.outputs.studies.json_numbers import estimate_json
+
+    run = found.run
+    return {
+        "book": str(run.model.path),
+        "goal": {"text": found.goal.measure.text, "maximise": found.goal.maximise},
+        "decisions": [
+            {"name": each.name, "cell": str(each.cell), "units": each.units, "value": value}
+            for each, value in zip(found.decisions, found.best, strict=True)
+        ],
+        "found": estimate_json(found.found),
+        "as_it_is": None if found.as_it_is is None else estimate_json(found.as_it_is),
+        "requirements": [
+            {
+                "text": each.requirement.text,
+                "found": estimate_json(each.found),
+                "probability": each.chance,
+            }
+            for each in found.held
+        ],
+        "indifference": found.indifference,
+        "confidence": found.confidence,
+        "others": [
+            {
+                "values": list(each.candidate),
+                "better_by": {"value": each.ahead, "error": each.error},
+                "told_apart": each.told_apart,
+                "meets_requirements": each.meets,
+                "probability_better": each.chance,
+                "trials": each.trials,
+            }
+            for each in found.rivals
+        ],
+        "tried": found.tried,
+        "trials_in_all": found.trials,
+        "trials": run.trials,
+        "seed": run.settings.seed,
+        "search_seed": found.search_seed,
+        "search": found.how,
+        "ended_early": found.ended or None,
+        "command": again,
+    }

@@ -1,0 +1,165 @@
+"""What `xlmc stability` found, as a document: which cells lose digits, and what to write instead."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from typing import TYPE_CHECKING
+
+from xlmc.errors import capitalised
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.stability import CellDigits, Finding, Stability
+    from xlmc.outputs.document.parts import Table
+    from xlmc.outputs.study_report import StudyReport
+
+__all__ = ["cells", "count", "finding_heading", "finding_sentences", "sentences", "stability_report"]
+
+
+_LEVELS = {"WRONG": "Wrong", "DOUBTFUL": "Doubtful", "NOTE": "Note"}
+
+
+def count(findings: Sequence[Finding]) -> str:
+    levels = [finding.level.name for finding in findings]
+    counts = {word.lower(): levels.count(level) for level, word in _LEVELS.items() if level in levels}
+    parts = [f"{count} {word}{'s' * (word == 'note' and count > 1)}" for word, count in counts.items()]
+    return (
+        f"{len(levels)} finding{'s' * (len(levels) != 1)}: {', '.join(parts)}"
+        if parts
+        else "no finding: no cell loses digits, and none gives a misleading number"
+    )
+
+
+def stability_report(found: Stability, all_cells: bool = False) -> StudyReport:
+    """Make the report; with `all_cells` its table has every cell, and not those alone that lose digits."""
+    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.outputs.document.parts import blocks_of
+    from xlmc.outputs.study_report import StudyReport
+
+    findings = [text for number, one in enumerate(found.findings, start=1) for text in _finding_texts(number, one)]
+    blocks = blocks_of(
+        [
+            f"{count(found.findings).capitalize()}.",
+            *findings,
+            cells(found, all_cells),
+            *sentences(found),
+        ]
+    )
+    below = f"{found.run.model.workbook.name}: {count_text(found.run.trials)} trials, seed {found.run.settings.seed}"
+    return StudyReport("Can the digits be trusted?", below, blocks, "Stability", partial(_as_json, found), found.run)
+
+
+def _finding_texts(number: int, finding: Finding) -> Iterator[str]:
+    yield finding_heading(number, finding, finding.formula)
+    yield from finding_sentences(finding)
+    if finding.instead:
+        yield f"Instead: {finding.instead}"
+
+
+def finding_heading(number: int, finding: Finding, formula: str) -> str:
+    name = f" {finding.name}" if finding.name else ""
+    return f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {formula}"
+
+
+def finding_sentences(finding: Finding) -> Iterator[str]:
+    yield from (f"{capitalised(text)}." for text in (finding.what, finding.effect))
+    if finding.where:
+        yield f"Where: {'; '.join(map(str, finding.where))}"
+
+
+def cells(found: Stability, all_cells: bool) -> Table:
+    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.outputs.document.parts import Table
+
+    model = found.run.model
+    targets = {row.cell for row in model.forecasts} | {row.cell for row in model.filters}
+    rows = tuple(
+        (
+            cell.name or str(cell.cell),
+            *([str(cell.cell)] if all_cells else []),
+            number_text(cell.amplification, 3),
+            number_text(cell.most, 3),
+            cell.through,
+            number_text(cell.rounding, 1),
+            number_text(cell.excess, 2),
+        )
+        for cell in found.cells
+        if all_cells or cell.cell in targets
+    )
+    headings = (
+        "Cell",
+        *(["Address"] if all_cells else []),
+        "Amplifies",
+        "In 1 of 100",
+        "Through",
+        "Rounding",
+        "Excess",
+    )
+    first = 3 if all_cells else 2
+    return Table("What cells amplify and lose", headings, rows, (first - 1, first, first + 2, first + 3))
+
+
+def sentences(found: Stability) -> Iterator[str]:
+    from xlmc.montecarlo.statistics.number_text import count_text
+
+    yield (
+        "Amplifies: if each assumption changes by 1 %, the cell changes by up to so many percent, in the median trial "
+        "and in one trial of 100. Through: the assumption that causes most of it. No other form of a formula makes it "
+        "less. Rounding: the largest error by rounding, as a share of the central range or of the value. Excess: how "
+        "many times larger that error is than the effect of rounding the assumptions alone; up to 7 in sound formulas."
+    )
+    trials = f"{count_text(found.points)} trial{'s' * (found.points != 1)}"
+    yield (
+        f"Examined: {trials} of a run of {count_text(found.run.trials)}, seed "
+        f"{found.run.settings.seed}, among them the base "
+        f"case and the ends of all ranges; {count_text(found.recomputed)} were computed again with 50 digits."
+    )
+    for cell, functions in found.unchecked:
+        yield f"Not checked with 50 digits: {', '.join(functions)} in {cell}."
+
+
+def _as_json(found: Stability) -> dict[str, object]:
+    return {
+        "book": str(found.run.model.path),
+        "trials": found.run.trials,
+        "seed": found.run.settings.seed,
+        "points": found.points,
+        "recomputed": found.recomputed,
+        "findings": [_finding_json(finding) for finding in found.findings],
+        "cells": [_cell_json(cell) for cell in found.cells],
+        "unchecked": [{"cell": str(cell), "functions": list(names)} for cell, names in found.unchecked],
+    }
+
+
+def _finding_json(finding: Finding) -> dict[str, object]:
+    from xlmc.montecarlo.statistics.estimate import finite
+
+    return {
+        "level": finding.level.name.lower(),
+        "kind": finding.kind,
+        "cell": str(finding.cell),
+        "name": finding.name,
+        "formula": finding.formula,
+        "what": finding.what,
+        "effect": finding.effect,
+        "where": [
+            {"assumption": one.name, "low": one.low, "high": one.high, "units": one.units} for one in finding.where
+        ],
+        "instead": finding.instead,
+        "size": finite(finding.size),
+    }
+
+
+def _cell_json(cell: CellDigits) -> dict[str, object]:
+    from xlmc.montecarlo.statistics.estimate import finite
+
+    return {
+        "cell": str(cell.cell),
+        "name": cell.name,
+        "amplification": finite(cell.amplification),
+        "amplification_1_of_100": finite(cell.most),
+        "through": cell.through,
+        "rounding": finite(cell.rounding),
+        "excess": finite(cell.excess),
+        "checked": cell.checked,
+    }

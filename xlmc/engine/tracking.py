@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.engine import Column, column_of
-from xlmc.engine.graph.graph import MANY, Constant, Dag, Input, constants, evaluate_node, uses
+from xlmc.engine.graph.graph import MANY, Constant, Dag, Input, apart, constants, evaluate_node, uses
 from xlmc.errors import FormulaError
 from xlmc.excel.functions import Kind
 from xlmc.excel.functions.budget import MOST_LIVE, TooLargeError, ask_for_live
@@ -174,7 +174,10 @@ class _Part:
             node = nodes[node_id]
             assert not isinstance(node, Constant)
             try:
-                found = Value.of_numbers(inputs[node.name]) if isinstance(node, Input) else evaluate_node(node, values)
+                if isinstance(node, Input):
+                    found = Value.of_numbers(inputs[node.name])
+                else:
+                    found = apart(evaluate_node(node, values))
                 values[node_id] = found
                 sizes[node_id] = found.nbytes
                 live += sizes[node_id]

@@ -31,6 +31,7 @@ import hashlib
 from bisect import bisect_right
 from collections.abc import Iterator
 from contextlib import nullcontext
+from functools import partial
 from typing import Final
 
 from xlmc.errors import FormulaError
@@ -55,6 +56,7 @@ __all__ = [
     "Select",
     "Target",
     "align",
+    "apart",
     "by_trial",
     "constants",
     "corner",
@@ -74,6 +76,30 @@ class Constant:
     """A value known before the run, `(1,)` or `(1, r, c)`."""
 
     value: Value
+
+
+class Forgotten(Constant):
+    """A constant array that was dropped for its memory, and is computed again when it is asked for."""
+
+    __slots__ = ("_compute",)
+
+    _compute: Callable[[], Value]
+
+    def __init__(self, compute: Callable[[], Value]) -> None:
+        object.__setattr__(self, "_compute", compute)
+
+    @property
+    def value(self) -> Value:
+        """The value, which is kept from now on."""
+        return self._compute()
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """Another process gets what has no value: no node that it evaluates reads this one."""
+        return Forgotten, (_never_read,)
+
+
+def _never_read() -> Value:
+    raise RuntimeError("a constant array that nothing reads was asked for in another process")
 
 
 @dataclass(frozen=True, slots=True)
@@ -182,6 +208,17 @@ def in_own_memory(result: Value, arguments: Iterable[Value]) -> Value:
     if any(np.may_share_memory(result.numbers, argument.numbers) for argument in arguments):
         return Value(result.numbers.copy(), result.kinds, result.texts)
     return result
+
+
+def apart(value: Value) -> Value:
+    """Return a part of a larger array in memory of its own: else all of the array would stay with it."""
+    if isinstance(value, Ragged):
+        return value
+    parts: list[Any] = []
+    for part in value.arrays():
+        held = part is not None and isinstance(part.base, np.ndarray) and part.nbytes < part.base.nbytes
+        parts.append(np.array(part) if held else part)
+    return value if all(part is old for part, old in zip(parts, value.arrays(), strict=True)) else Value(*parts)
 
 
 def _evaluate(node: Apply | Select | IfErrorNode | Range, values: Mapping[int, Value]) -> Value:
@@ -381,6 +418,7 @@ class Dag:
         missing: the nodes that read, perhaps not in each trial, a value that is not there, of a cell in a circle.
         folded: a function of a long set -> the node that folds its cells one by one, to the same bits where nothing is
             an error.
+        kept: the bytes of all constant arrays that are in memory; each counts once, however many formulas read it.
         hosts, ends: the formula cells in the order in which they were lowered, and how many nodes there were then.
     """
 
@@ -394,7 +432,11 @@ class Dag:
         self.missing: set[int] = set()
         self.folded: dict[int, int] = {}
         self._known: dict[object, int] = {}
-        self._bytes = 0
+        self.kept = 0
+        self._forgettable: dict[int, int] = {}  # computed arrays of constants -> bytes
+        self._forgotten: set[int] = set()
+        self._read: set[int] = set()  # by nodes that vary, up to the one before `_looked_through`
+        self._looked_through = 0
         self.hosts: list[Cell] = []
         self.ends: list[int] = []
 
@@ -423,18 +465,76 @@ class Dag:
         Raises:
             TooLargeError: the constants of the workbook take too much memory.
         """
-        if value.numbers.size > 1:
-            self._keep(value)
-        return self._register(_constant_key(value), Constant(value), _constant_type(value), value.shape[1:] or None)
+        key = _constant_key(value)
+        if key not in self._known:
+            value = apart(value)
+            if value.numbers.size > 1:
+                self._keep(value)
+        return self._register(key, Constant(value), _constant_type(value), value.shape[1:] or None)
 
     def _keep(self, value: Value) -> None:
-        """Count the memory of an array's numbers, and of its copy in the key."""
-        self._bytes += value.nbytes
-        if self._bytes > MOST_KEPT:
+        """Count the memory of an array; where it is too much, forget computed arrays that no varying node reads."""
+        self.kept += value.nbytes
+        if self.kept > MOST_KEPT:
+            self._forget()
+        if self.kept > MOST_KEPT:
+            self.kept -= value.nbytes
             raise TooLargeError(
                 f"the arrays of constants of the workbook take more than {MOST_KEPT >> 20} MB up to here",
                 hint="make the arrays smaller, or fewer",
             )
+
+    def _forget(self) -> None:
+        """Drop all computed arrays that no varying node reads so far."""
+        for node in self.nodes[self._looked_through :]:
+            if not isinstance(node, Constant):
+                self._read.update(uses(node))
+        self._looked_through = len(self.nodes)
+        for node_id in self._forgettable.keys() - self._read:
+            self.kept -= self._forgettable.pop(node_id)
+            self.nodes[node_id] = Forgotten(partial(self._remember, node_id))
+            self._forgotten.add(node_id)
+
+    def _remember(self, node_id: int) -> Value:
+        """Compute a forgotten array again, and keep it; where that was done meanwhile, return it.
+
+        Raises:
+            TooLargeError: the arrays that this needs at a time take too much memory.
+        """
+        node = self.nodes[node_id]
+        if type(node) is Constant:
+            return node.value
+        order = self._to_compute(node_id)
+        last = {part: each for each in order for part in uses(self.origins[each])}
+        values: dict[int, Value] = {}
+        live = 0
+        for each in order:
+            origin = self.origins[each]
+            for part in uses(origin):
+                if part not in values and isinstance(known := self.nodes[part], Constant):
+                    values[part] = known.value
+            values[each] = evaluate_node(origin, values)
+            live += values[each].nbytes
+            ask_for_live(live)
+            for part in set(uses(origin)):
+                if last[part] == each:
+                    gone = values.pop(part)
+                    live -= gone.nbytes if part in self._forgotten else 0
+        value = apart(values[node_id])
+        self._keep(value)
+        self.nodes[node_id] = Constant(value)
+        self._forgotten.discard(node_id)
+        self._forgettable[node_id] = value.nbytes
+        return value
+
+    def _to_compute(self, node_id: int) -> list[int]:
+        """Return a forgotten array and the forgotten ones that it is computed from, in the order of their making."""
+        found, left = {node_id}, [node_id]
+        while left:
+            parts = self._forgotten.intersection(uses(self.origins[left.pop()])) - found
+            found |= parts
+            left += parts
+        return sorted(found)
 
     def input(self, name: str) -> int:
         """Return the node of an assumption."""
@@ -490,6 +590,8 @@ class Dag:
                 nodes.append(node)
                 types.append(kind)
                 sizes.append(size)
+                if self._forgotten:
+                    self._remember_all(used)
                 if self.missing:
                     self._note_missing(node_id, used)
             local.append(node_id)
@@ -506,13 +608,16 @@ class Dag:
         known = {p: part.value for p in uses(node) if isinstance(part := self.nodes[p], Constant)}
         if len(known) == len(set(uses(node))) and not _volatile(node):
             new = len(self.nodes)
-            value = evaluate_node(node, known)
+            value = apart(evaluate_node(node, known))
             if not self.missing.isdisjoint(known) and (value.kinds == ERROR + ErrorCode.CALC).any():
                 return self._register_missing(node, value)
             node_id = self.constant(value)
-            self._known[node] = node_id
+            if node_id == new or not isinstance(node, Range) or value.numbers.size <= _LARGE:
+                self._known[node] = node_id  # a second large range of the same values is found by these
             if node_id == new:  # else it was typed in, or computed before
                 self.origins[node_id] = node
+                if value.numbers.size > _LARGE and not isinstance(node, Range):
+                    self._forgettable[node_id] = value.nbytes
             return node_id
         return self._register(node, node, self._type(node) if size is None else Kind.ANY, size)
 
@@ -579,11 +684,19 @@ class Dag:
 
     def _register(self, key: object, node: Node, kind: Kind, size: Size) -> int:
         if key not in self._known:
+            if self._forgotten and not isinstance(node, Constant):
+                self._remember_all(uses(node))
             self._known[key] = len(self.nodes)
             self.nodes.append(node)
             self.types.append(kind)
             self.sizes.append(size)
         return self._known[key]
+
+    def _remember_all(self, parts: Sequence[int]) -> None:
+        """Compute again what a varying node reads: it is read in each trial."""
+        self._read.update(parts)
+        for part in self._forgotten.intersection(parts):
+            self._remember(part)
 
     def _type(self, node: Apply | Select | IfErrorNode | Range) -> Kind:
         match node:
@@ -644,7 +757,9 @@ def _constant_key(value: Value) -> object:
     if value.numbers.size > _LARGE:
         digest = hashlib.sha256(np.ascontiguousarray(value.numbers).data)
         digest.update(np.ascontiguousarray(value.kinds).data)
-        return value.shape, digest.digest(), texts
+        for text in texts or ():
+            digest.update(f"{len(text)}:{text}".encode("utf-8", "surrogatepass"))
+        return value.shape, value.kinds.shape, digest.digest(), texts is None
     return value.shape, value.numbers.tobytes(), value.kinds.tobytes(), texts
 
 
@@ -655,7 +770,7 @@ def _constant_type(value: Value) -> Kind:
 
 
 def constants(dag: Dag) -> Iterator[tuple[int, Value]]:
-    """Every constant node."""
+    """Every constant node, but for forgotten arrays, which no varying node reads."""
     for node_id, node in enumerate(dag.nodes):
-        if isinstance(node, Constant):
+        if isinstance(node, Constant) and not isinstance(node, Forgotten):
             yield node_id, node.value

@@ -33,7 +33,7 @@ __all__ = [
 
 def row_sums(x: Floats) -> Floats:
     """Sum each row from left to right, with the same bits for any number of rows: (n, k) -> (n,)."""
-    return np.asarray(np.add.accumulate(x, axis=1)[:, -1])
+    return np.add.accumulate(x, axis=1)[:, -1].copy()  # a part would hold all sums up to it in memory
 
 
 def mean_of(x: Floats, counts: Bools) -> tuple[Floats, Floats, Floats]:

@@ -159,7 +159,7 @@ keep their size: the empty cells beyond are counted, not read. A function that w
 | calls of a `LAMBDA` by itself, within each other | 16,384 / (its parameters + 1); deeper is `#NUM!`, as in Excel |
 | steps of all such calls, from 60 within each other or 1,000 in all | 100,000 |
 | steps of one `MMULT`, `MDETERM` or `MINVERSE` | 2,147,483,648 |
-| memory of all constant arrays; of all arrays of a block of trials | 256 MB each |
+| memory of constant arrays at a time, each once; of all arrays of a block of trials | 256 MB each |
 | characters of a formula as the file holds it (Excel: 8,192 as it shows it) | 32,768 |
 | levels of a formula with its names written out (Excel: 64 calls) | 200 |
 | arguments of a function | 255, as in Excel |

@@ -65,7 +65,7 @@ MOST_READ: Final = 1 << 21
 """Cells of one area of a sheet; whole columns and rows are counted up to the last filled cell."""
 
 MOST_KEPT: Final = 1 << 28
-"""Bytes of all constants of a workbook together."""
+"""Bytes of all constant arrays that are in memory at a time, each counted once."""
 
 MOST_LIVE: Final = 1 << 28
 """Bytes of all values that are needed at a time while a portion of trials is evaluated."""

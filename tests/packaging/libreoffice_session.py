@@ -48,7 +48,14 @@ def install(context, url):
                     each.select()
 
     manager = context.getValueByName("/singletons/com.sun.star.deployment.ExtensionManager")
-    manager.addExtension(url, (), "user", None, Willing())
+    for left in reversed(range(10)):
+        try:
+            manager.addExtension(url, (), "user", None, Willing())
+            return
+        except Exception:  # DeploymentException: LibreOffice answers before it has all that it needs for this
+            if not left:
+                raise
+            time.sleep(1.0)
 
 
 def messages_of(context, extension, entry, answer):

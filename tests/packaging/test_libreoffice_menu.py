@@ -64,13 +64,15 @@ def office(tmp_path_factory):
         return json.loads(done.stdout)
 
     choose.folder = folder
-    choose("install", package)
-    yield choose
-    os.killpg(server.pid, signal.SIGKILL)
-    server.wait()
-    for number in map(int, started.read_text(encoding="utf-8").split()):
-        with suppress(ProcessLookupError):  # the live window alone goes on
-            os.kill(number, signal.SIGINT)
+    try:
+        choose("install", package)
+        yield choose
+    finally:
+        os.killpg(server.pid, signal.SIGKILL)
+        server.wait()
+        for number in map(int, started.read_text(encoding="utf-8").split() if started.exists() else ()):
+            with suppress(ProcessLookupError):  # the live window alone goes on
+                os.kill(number, signal.SIGINT)
 
 
 @pytest.fixture

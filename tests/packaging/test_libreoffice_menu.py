@@ -39,7 +39,8 @@ def office(tmp_path_factory):
     browser = programs / "browser"
     browser.write_text(f'#!/bin/sh\necho "$1" > "{folder}/browsed"\n', encoding="utf-8")
     browser.chmod(0o755)
-    paths = {"PATH": f"{programs}{os.pathsep}{os.environ['PATH']}", "BROWSER": f"{browser} %s"}
+    # LibreOffice's Python takes its library from the first python3 on the path, so that another one must not be there.
+    paths = {"PATH": f"{programs}:/usr/bin:/bin", "BROWSER": f"{browser} %s"}
     environment = os.environ | paths | {"XDG_STATE_HOME": str(folder / "state"), "HOME": str(folder)}
     pipe = f"xlmc-{os.getpid()}"
     server = subprocess.Popen(

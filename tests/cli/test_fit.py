@@ -261,3 +261,15 @@ def test_columns_of_a_range_have_headings(xlmc, tmp_path):
         outcome = xlmc("fit", *given)
         assert outcome.code == 2
         assert message.casefold() in outcome.err.casefold()
+
+
+def test_a_semicolon_in_a_heading_makes_no_decimal_comma(xlmc, tmp_path):
+    """Cells of a file that commas part hold no decimal commas: `1,234` in quotation marks is a text."""
+    data = tmp_path / "data.csv"
+    lines = [f'"1,{200 + number}",{number + 0.5}' for number in range(30)]
+    data.write_text("\n".join(["Speed; rounded,Time", *lines]), encoding="utf-8")
+    outcome = xlmc("fit", data, "--json")
+    assert outcome.code == 0, outcome.err
+    rounded, time = json.loads(outcome.out)["columns"]
+    assert (rounded["distribution"], len(rounded["shares"])) == (None, 30)
+    assert time["values"] == 30

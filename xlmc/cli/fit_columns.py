@@ -13,7 +13,9 @@ from xlmc.cli.study_output import give_out
 from xlmc.cli.terminal import say
 
 if TYPE_CHECKING:
-    from xlmc.analysis.studies.fitting.columns import Fits
+    from xlmc.analysis.studies.fitting import Fitted
+    from xlmc.analysis.studies.fitting.columns import ColumnFit, Fits
+    from xlmc.excel.workbook.workbook import Workbook
     from xlmc.outputs.document.parts import Block, Table
     from xlmc.outputs.study_report import Files, StudyReport
 
@@ -71,7 +73,7 @@ def fit_columns(
         raise click.exceptions.Exit(1)
 
 
-def _book(path: Path):  # type: ignore[no-untyped-def]  # a Workbook, whose module takes time to import
+def _book(path: Path) -> Workbook | None:
     from xlmc.excel.workbook.reader import read_workbook
     from xlmc.excel.workbook.target import refuse_into_other_format
     from xlmc.excel.workbook.writer import refuse_if_open
@@ -86,7 +88,7 @@ def _book(path: Path):  # type: ignore[no-untyped-def]  # a Workbook, whose modu
     return book
 
 
-def _data(book, found: Fits, source: str) -> bytes:  # type: ignore[no-untyped-def]  # as above
+def _data(book: Workbook | None, found: Fits, source: str) -> bytes:
     """Return the workbook with the sheet.
 
     Raises:
@@ -126,7 +128,7 @@ def columns_of_csv(path: Path, wanted: str | None) -> dict[str, list[float | str
     from xlmc.errors import WorkbookError
     from xlmc.excel.workbook.typed_values import lines_of
 
-    lines = list(lines_of(path))
+    mark, lines = lines_of(path)
     if len(lines) < 2:
         raise WorkbookError("the file has no values", where=path, hint="Its first line has the headings")
     heads = [each.strip() for each in lines[0][1]]
@@ -134,13 +136,12 @@ def columns_of_csv(path: Path, wanted: str | None) -> dict[str, list[float | str
         if len(cells) > len(heads):
             message = f"line {number} has {len(cells)} cells, and there are {len(heads)} headings"
             raise WorkbookError(message, where=path, hint="Put texts with commas in quotation marks")
-    semicolons = path.read_text(encoding="utf-8-sig").partition("\n")[0].count(";") > 0
     texts = {
         head: [(cells[at].strip() if at < len(cells) else "") for _, cells in lines[1:]]
         for at, head in enumerate(heads)
         if head
     }
-    return _wanted({head: _typed(cells, comma=semicolons) for head, cells in texts.items()}, wanted)
+    return _wanted({head: _typed(cells, comma=mark == ";") for head, cells in texts.items()}, wanted)
 
 
 def _typed(cells: Sequence[str], *, comma: bool) -> list[float | str | None]:
@@ -231,7 +232,7 @@ def _blocks(found: Fits) -> Iterator[str | Block]:
         if each.fitting is None or each.best is None:
             continue
         near = [f.name for f in each.fitting.fits[1:] if f.aic - each.best.aic < 2.0]
-        rows.append((each.name, str(each.fitting.n), each.best.name, _parameters(each), ", ".join(near)))
+        rows.append((each.name, str(each.fitting.n), each.best.name, _parameters(each, each.best), ", ".join(near)))
     if rows:
         heads = ("Column", "Values", "Distribution", "Parameters", "About as good")
         yield Table("The best distribution of each column", heads, tuple(rows), (1,))
@@ -249,15 +250,15 @@ def _blocks(found: Fits) -> Iterator[str | Block]:
             yield f"Not fitted: {each.name}: {each.why}."
 
 
-def _parameters(each) -> str:  # type: ignore[no-untyped-def]  # a ColumnFit
+def _parameters(each: ColumnFit, best: Fitted) -> str:
     from xlmc.analysis.studies.fitting import parameter_texts
     from xlmc.montecarlo.statistics import format_estimate
 
     parts = []
-    for heading, text in parameter_texts(each.best).items():
+    for heading, text in parameter_texts(best).items():
         repeated = (each.repeated or {}).get(heading)
-        error = each.best.errors[heading] if repeated is None else float(repeated.std(ddof=1))
-        value = each.best.parameters[heading]
+        error = best.errors[heading] if repeated is None else float(repeated.std(ddof=1))
+        value = best.parameters[heading]
         parts.append(f"{heading} {text if not error or error != error else format_estimate(value, error)}")
     return ", ".join(parts)
 

@@ -97,7 +97,7 @@ def read_value_rows(path: Path, book: Workbook) -> ValueRows:
     Raises:
         WorkbookError: the file cannot be read, a heading is no cell, or a value is none; told of the line.
     """
-    lines = list(lines_of(path))
+    _, lines = lines_of(path)
     if not lines:
         raise WorkbookError("the file holds no rows", where=path, hint="Write cells as headings, and rows of values")
     (_, headings), *body = lines
@@ -159,8 +159,12 @@ def _typed(path: Path, line: int, book: Workbook, place: str | Cell, value: str)
         raise WorkbookError(f"line {line}: {error}", where=path) from None
 
 
-def lines_of(path: Path) -> Iterator[tuple[int, list[str]]]:
-    """Yield the lines that hold anything, with their numbers; parted by commas, semicolons or tabs."""
+def lines_of(path: Path) -> tuple[str, list[tuple[int, list[str]]]]:
+    """Return the mark that parts cells (comma, semicolon or tab) and the lines that hold anything, with their numbers.
+
+    Raises:
+        WorkbookError: the file cannot be read, is not in UTF-8, is no table, or has too many lines.
+    """
     try:
         text = path.read_text(encoding="utf-8-sig")
     except UnicodeDecodeError:
@@ -174,14 +178,15 @@ def lines_of(path: Path) -> Iterator[tuple[int, list[str]]]:
         raise WorkbookError(message, where=path, hint=hint) from error
     first = text.partition("\n")[0]
     mark = max(",;\t", key=first.count)
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=mark)
+    reader, lines = csv.reader(io.StringIO(text, newline=""), delimiter=mark), []
     try:
         for row in reader:
             if reader.line_num > _MOST_ROWS:
                 hint = "Split it into several files"
                 raise WorkbookError(f"the file has more than {_MOST_ROWS:,} lines", where=path, hint=hint)
             if any(cell.strip() for cell in row):
-                yield reader.line_num, row
+                lines.append((reader.line_num, row))
     except csv.Error as error:
         message = f"line {reader.line_num} cannot be read ({error})"
         raise WorkbookError(message, where=path, hint="Correct it, or save the file as CSV again") from error
+    return mark, lines

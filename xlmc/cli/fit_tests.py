@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
@@ -118,12 +117,10 @@ def _rows(source: Path, reference: str | None) -> list[list[Item]]:
 
 
 def _of_csv(source: Path) -> list[list[Item]]:
-    try:
-        text = source.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise DefinitionError(f"{source} cannot be read: {error}", hint="Save it as CSV in UTF-8.") from error
-    separator = max(";\t,", key=text.partition("\n")[0].count)
-    return [[item.strip() for item in row] for row in csv.reader(text.splitlines(), delimiter=separator)]
+    from xlmc.excel.workbook.typed_values import lines_of
+
+    _, lines = lines_of(source)
+    return [[item.strip() for item in row] for _, row in lines]
 
 
 def _of_range(source: Path, reference: str) -> list[list[Item]]:

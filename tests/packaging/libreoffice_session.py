@@ -17,13 +17,14 @@ import time
 def connected(pipe):
     """Return the context of LibreOffice, which may still be starting."""
     import uno
+    from com.sun.star.connection import NoConnectException
 
     local = uno.getComponentContext()
     resolver = local.ServiceManager.createInstanceWithContext("com.sun.star.bridge.UnoUrlResolver", local)
     for _ in range(600):
         try:
             return resolver.resolve(f"uno:pipe,name={pipe};urp;StarOffice.ComponentContext")
-        except Exception:
+        except NoConnectException:
             time.sleep(0.1)
     raise SystemExit("LibreOffice did not start")
 
@@ -32,6 +33,7 @@ def install(context, url):
     """Install a package for this user; LibreOffice asks whether it may, and is told that it may."""
     import uno
     import unohelper
+    from com.sun.star.deployment import DeploymentException
     from com.sun.star.task import XInteractionHandler
     from com.sun.star.ucb import XCommandEnvironment
 
@@ -52,7 +54,7 @@ def install(context, url):
         try:
             manager.addExtension(url, (), "user", None, Willing())
             return
-        except Exception:  # DeploymentException: LibreOffice answers before it has all that it needs for this
+        except DeploymentException:  # LibreOffice answers before it has all that it needs for this
             if not left:
                 raise
             time.sleep(1.0)

@@ -10,7 +10,8 @@ from typing import Final, Protocol, runtime_checkable
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.graph.graph import Target, corner
+from xlmc.engine.graph.node_values import corner
+from xlmc.engine.graph.nodes import Target
 from xlmc.excel.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Objects, Value
 
 __all__ = [

@@ -14,7 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.engine import Column, column_of
-from xlmc.engine.graph.graph import MANY, Constant, Dag, Input, apart, constants, evaluate_node, uses
+from xlmc.engine.graph.graph import MANY, Dag, constants
+from xlmc.engine.graph.node_values import apart, evaluate_node
+from xlmc.engine.graph.nodes import Constant, Input, uses
 from xlmc.errors import FormulaError
 from xlmc.excel.functions import Kind
 from xlmc.excel.functions.budget import MOST_LIVE, TooLargeError, ask_for_live

@@ -7,7 +7,7 @@ import pickle
 import numpy as np
 import pytest
 
-from xlmc.engine.graph.graph import Constant, Forgotten
+from xlmc.engine.graph.nodes import Constant, Forgotten
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.engine.tracking import TrackingEvaluator
 from xlmc.errors import FormulaError

@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from xlmc.engine.graph.fill_down import FillDownCache
-from xlmc.engine.graph.graph import Apply, Constant, IfErrorNode, Input, Range, Select, uses
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, uses
 
 FORMULAS = [
     "A{r}+B{r}*2",

@@ -1,9 +1,9 @@
 from __future__ import annotations
 
-import numpy as np
 import pytest
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag, IfErrorNode, Input, Range, Select, uses
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select, uses
 from xlmc.errors import ErrorCode
 from xlmc.excel.functions import Kind
 from xlmc.excel.functions.families import REGISTRY
@@ -103,13 +103,3 @@ def test_upstream_is_what_varies_in_order(dag):
     assert dag.upstream([two]) == [a, one, two]
     assert dag.upstream([number(dag, 9.0)]) == []
     assert dag.upstream([two, a]) == [a, one, two]
-
-
-def test_a_range_of_no_trials(dag):
-    from xlmc.engine.graph.graph import evaluate_node
-    from xlmc.excel.functions.values import Value
-
-    a = dag.input("a")
-    node = dag.nodes[dag.add(Range(((a, number(dag, 1.0)),)))]
-    values = {a: Value.of_numbers(np.empty(0)), number(dag, 1.0): constant(1.0)}
-    assert evaluate_node(node, values).shape == (0, 1, 2)

@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.engine.graph.graph import Apply, Constant, Input, Range
 from xlmc.engine.graph.lowering import Lowering
+from xlmc.engine.graph.nodes import Apply, Constant, Input, Range
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Area, parse_address
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.engine.graph.graph import Apply
+from xlmc.engine.graph.nodes import Apply
 from xlmc.engine.graph.number_lookups import NumberLookups
 from xlmc.excel.functions.lookup.search_and_pick import POSITION
 

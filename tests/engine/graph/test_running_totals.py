@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from xlmc.engine.graph.graph import uses
+from xlmc.engine.graph.nodes import uses
 from xlmc.engine.graph.running_totals import RunningTotals
 from xlmc.excel.address import Cell, column_letters
 from xlmc.excel.formula import Resolver, build_graph

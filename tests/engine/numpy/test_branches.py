@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.engine.graph.graph import Constant, Input, Select
+from xlmc.engine.graph.nodes import Constant, Input, Select
 from xlmc.engine.graph.trial_sets import ALL_TRIALS
 from xlmc.engine.numpy.branches import SURVIVORS, Placement
 

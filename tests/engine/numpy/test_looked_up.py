@@ -9,7 +9,7 @@ import pytest
 from simulated import simulated
 from table_books import CELLS, GIVEN, TABLE, TRIALS, outcome_of, some_book
 
-from xlmc.engine.graph.graph import Apply
+from xlmc.engine.graph.nodes import Apply
 from xlmc.engine.graph.trial_sets import ALL_TRIALS
 from xlmc.engine.numpy import numpy_engine
 from xlmc.excel.functions.math import trigonometry

@@ -8,7 +8,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from simulated import simulated
 
-from xlmc.engine.graph.graph import Apply, Dag, Select
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Select
 from xlmc.engine.passes.bounds import NodeBounds
 from xlmc.excel.functions.families import REGISTRY
 from xlmc.excel.functions.lookup.search_and_pick import CELL_AT

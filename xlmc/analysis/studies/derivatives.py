@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import ArrayLike
 
-from xlmc.engine.graph.graph import Range
+from xlmc.engine.graph.nodes import Range
 from xlmc.engine.passes.derivatives.derivative import Derivative, Derivatives, Notes
 from xlmc.engine.passes.derivatives.jet import Jet
 from xlmc.engine.passes.derivatives.sweep import UnequalSizes, owners, sweep_forward

@@ -21,7 +21,8 @@ from typing import Final
 import numpy as np
 
 from xlmc.engine.graph.circles import refuse_hidden
-from xlmc.engine.graph.graph import MANY, Apply, Constant, Dag, Range, Select
+from xlmc.engine.graph.graph import MANY, Dag
+from xlmc.engine.graph.nodes import Apply, Constant, Range, Select
 from xlmc.engine.graph.number_lookups import NumberLookups
 from xlmc.engine.graph.running_totals import PAIRED_OR_COUNTED, RunningTotals
 from xlmc.errors import ErrorCode, FormulaError

@@ -13,7 +13,8 @@ from collections.abc import Callable, Iterator, Mapping
 from xlmc.engine.graph.arrays import as_range, cell_by_cell, either_reference, sizes_differ
 from xlmc.engine.graph.circles import hidden_error
 from xlmc.engine.graph.computed_references import NoReference, areas_of
-from xlmc.engine.graph.graph import MANY, Constant, IfErrorNode, Range
+from xlmc.engine.graph.graph import MANY
+from xlmc.engine.graph.nodes import Constant, IfErrorNode, Range
 from xlmc.engine.graph.scope import Scope, TreeLowering
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Area

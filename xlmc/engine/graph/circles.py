@@ -15,7 +15,8 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag, IfErrorNode, Range, Select, uses
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Range, Select, uses
 from xlmc.engine.graph.picked_ranges import PICKING
 from xlmc.errors import FormulaError
 from xlmc.excel.address import Cell

@@ -11,8 +11,9 @@ from dataclasses import dataclass
 from typing import Final
 
 from xlmc.engine.graph.choices import CHOICES
-from xlmc.engine.graph.graph import Apply, Constant, Dag, IfErrorNode, Node, Range, Repeat, Select, uses
+from xlmc.engine.graph.graph import Dag, Repeat
 from xlmc.engine.graph.lambdas import LAMBDAS
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Node, Range, Select, uses
 from xlmc.engine.graph.reference_functions import REFERENCE_FUNCTIONS
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import Stencil, ir

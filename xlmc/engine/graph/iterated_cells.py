@@ -13,7 +13,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from xlmc.engine.graph.graph import Apply, IfErrorNode, Range, Select, corner, evaluate_node, uses
+from xlmc.engine.graph.node_values import corner, evaluate_node
+from xlmc.engine.graph.nodes import Apply, IfErrorNode, Range, Select, uses
 from xlmc.engine.graph.recursive_calls import join_trials, spread_trials
 from xlmc.excel.functions.values import ERROR, TEXT, Bools, Value, constant
 from xlmc.excel.iteration import Iteration

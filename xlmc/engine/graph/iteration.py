@@ -13,8 +13,9 @@ from functools import partial
 import numpy as np
 
 from xlmc.engine.graph.arrays import element
-from xlmc.engine.graph.graph import Apply, Constant, Dag, in_slots, uses
+from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.iterated_cells import Formula, Round, Step, iterate
+from xlmc.engine.graph.nodes import Apply, Constant, in_slots, uses
 from xlmc.engine.graph.recursion import placeholder
 from xlmc.errors import Notice
 from xlmc.excel.address import Cell

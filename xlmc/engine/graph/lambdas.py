@@ -8,7 +8,9 @@ from typing import Final
 from xlmc.engine.graph.arrays import element, grid, size_of
 from xlmc.engine.graph.called_functions import limits
 from xlmc.engine.graph.computed_references import areas_of
-from xlmc.engine.graph.graph import MANY, Apply, single
+from xlmc.engine.graph.graph import MANY
+from xlmc.engine.graph.node_values import single
+from xlmc.engine.graph.nodes import Apply
 from xlmc.engine.graph.recursion import call_recursive
 from xlmc.engine.graph.scope import (
     Arguments,

@@ -20,9 +20,10 @@ from xlmc.engine.graph.circles import CircleError, Iterates, lower_as_read
 from xlmc.engine.graph.computed_references import NoReference, NotYetNeeded, areas_of, of_one_cell
 from xlmc.engine.graph.fill_down import FillDownCache
 from xlmc.engine.graph.further_cells import refusal
-from xlmc.engine.graph.graph import MANY, Apply, Constant, Dag, Input, Range, Target
+from xlmc.engine.graph.graph import MANY, Dag
 from xlmc.engine.graph.iteration import IteratedCells, in_order, iterate_cells
 from xlmc.engine.graph.moment import Moment
+from xlmc.engine.graph.nodes import Apply, Constant, Input, Range, Target
 from xlmc.engine.graph.picked_ranges import PICKING, range_as_read
 from xlmc.engine.graph.reference_functions import REFERENCE_FUNCTIONS
 from xlmc.engine.graph.running_totals import FOLDS, RunningTotals

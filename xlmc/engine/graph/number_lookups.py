@@ -11,7 +11,8 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant
 from xlmc.excel.functions import Function, Kind
 from xlmc.excel.functions.lookup.picked_cells import map_parts, transpose_cells
 from xlmc.excel.functions.lookup.search_and_pick import CELL_AT, POSITION, Pick, Search, numbers_of

@@ -12,7 +12,9 @@ from typing import Final, Protocol
 
 import numpy as np
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag, Range, evaluate_node
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.node_values import evaluate_node
+from xlmc.engine.graph.nodes import Apply, Constant, Range
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.functions import Function

@@ -15,7 +15,8 @@ from typing import Final
 
 from xlmc.engine.graph.arrays import element, grid, size_of
 from xlmc.engine.graph.computed_references import areas_of, join_areas
-from xlmc.engine.graph.graph import Apply, Constant, Dag, Node, Select, in_slots, uses
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant, Node, Select, in_slots, uses
 from xlmc.engine.graph.recursive_calls import Body, SelfCall, Step, call_lambda
 from xlmc.engine.graph.scope import (
     Arguments,

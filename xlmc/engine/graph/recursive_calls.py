@@ -14,7 +14,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.graph.graph import Apply, IfErrorNode, Ragged, Range, Select, corner, evaluate_node, uses
+from xlmc.engine.graph.node_values import Ragged, corner, evaluate_node
+from xlmc.engine.graph.nodes import Apply, IfErrorNode, Range, Select, uses
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.functions.budget import MOST_STEPS, ask_for_live
 from xlmc.excel.functions.logical import zero_if_blank

@@ -19,7 +19,8 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from typing import Final
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag, Range
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant, Range
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.functions import Function, Kind

@@ -11,7 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cache, partial
 
 from xlmc.engine.graph.arrays import element, pick
-from xlmc.engine.graph.graph import MANY, Apply, Dag
+from xlmc.engine.graph.graph import MANY, Dag
+from xlmc.engine.graph.nodes import Apply
 from xlmc.errors import FormulaError
 from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell
 from xlmc.excel.formula import Graph

@@ -11,7 +11,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant
 from xlmc.engine.graph.number_lookups import key_of, lookup_of
 from xlmc.excel.functions import Kind
 from xlmc.excel.functions.fifteen_digits import SNAP_TO_ZERO

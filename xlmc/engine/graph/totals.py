@@ -10,7 +10,7 @@ from typing import Final
 
 from xlmc.engine.graph.arrays import cell_by_cell
 from xlmc.engine.graph.computed_references import areas_of
-from xlmc.engine.graph.graph import Range
+from xlmc.engine.graph.nodes import Range
 from xlmc.engine.graph.scope import Scope, TreeLowering
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Area, Cell

@@ -32,7 +32,7 @@ from xlmc.engine.graph.further_cells import (
     to_filled,
     to_the_last,
 )
-from xlmc.engine.graph.graph import Constant, IfErrorNode, Range
+from xlmc.engine.graph.nodes import Constant, IfErrorNode, Range
 from xlmc.engine.graph.scope import Scope, TreeLowering
 from xlmc.errors import FormulaError
 from xlmc.excel.address import Area

@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.engine import AcceptedBlock, BlockMemory, Linear
-from xlmc.engine.graph.graph import Dag, Input
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Input
 from xlmc.engine.llvm.block_kernel import WORD, Layout, compile_kernel
 from xlmc.engine.llvm.loop_rules import Literal, Operand, literal
 from xlmc.engine.llvm.machine import machine

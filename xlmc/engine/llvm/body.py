@@ -16,7 +16,8 @@ from typing import Any
 
 from llvmlite import ir
 
-from xlmc.engine.graph.graph import Dag, Select
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Select
 from xlmc.engine.graph.trial_sets import ALL_TRIALS, DEEPEST_BRANCHES, TrialSet, common_set
 from xlmc.engine.llvm.loop_arithmetic import Arithmetic, intrinsic, sine_and_cosine
 from xlmc.engine.llvm.loop_rules import Literal, LoopRule, Operand, reads

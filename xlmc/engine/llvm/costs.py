@@ -10,7 +10,8 @@ from __future__ import annotations
 from collections.abc import Container, Iterable
 from typing import Final
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag, Input, Node, Range, Select
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant, Input, Node, Range, Select
 from xlmc.excel.functions import Kind
 
 __all__ = ["loops_pay"]

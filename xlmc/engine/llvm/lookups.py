@@ -12,7 +12,8 @@ from typing import Any, Final
 
 from llvmlite import ir
 
-from xlmc.engine.graph.graph import Apply, Dag
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply
 from xlmc.engine.graph.number_lookups import key_of, lookup_of
 from xlmc.engine.llvm.constant_column import ConstantColumn
 from xlmc.engine.llvm.loop_rules import Emit, Emitter, LoopRule, Operand

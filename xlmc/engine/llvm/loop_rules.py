@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Container, Sequence
 from typing import Any, Final, NamedTuple, Protocol
 
-from xlmc.engine.graph.graph import Constant, Dag, uses
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Constant, uses
 from xlmc.excel.functions import Kind
 
 __all__ = [

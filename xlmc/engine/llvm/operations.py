@@ -14,7 +14,8 @@ from typing import Any, Final
 
 from llvmlite import ir
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag, IfErrorNode, Node, Select
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Node, Select
 from xlmc.engine.llvm.lookups import lookup_rule
 from xlmc.engine.llvm.loop_arithmetic import Arithmetic, arccosine, arcsine, arctangent, arctangent_of_two
 from xlmc.engine.llvm.loop_powers import common_logarithm, exponential, logarithm, power

@@ -15,17 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.engine import Column, column_of
-from xlmc.engine.graph.graph import (
-    Apply,
-    Constant,
-    Dag,
-    IfErrorNode,
-    Input,
-    Range,
-    Select,
-    evaluate_node,
-    in_own_memory,
-)
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.node_values import evaluate_node, in_own_memory
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select
 from xlmc.engine.llvm.loop import SIDE_BY_SIDE, Load, compile_loop
 from xlmc.engine.llvm.loop_rules import PLAIN, Operand
 from xlmc.engine.llvm.machine import Machine, NativeLoop

@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.engine import BlockRunner, Column, Evaluator, Linear, Target
-from xlmc.engine.graph.graph import Dag, Input, Select
+from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.lowering import Lowering
+from xlmc.engine.graph.nodes import Input, Select
 from xlmc.engine.graph.readiness import order_by_need
 from xlmc.engine.llvm.block_runner import NativeBlockRunner, block_parts
 from xlmc.engine.llvm.costs import loops_pay

@@ -9,7 +9,8 @@ from typing import Any, Final
 
 import numpy as np
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag, Range
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant, Range
 from xlmc.engine.llvm.loop_rules import Emit, Emitter, Literal, LoopRule, Operand, first_operand, part_of
 from xlmc.excel.functions import Kind
 from xlmc.excel.functions.values import BLANK, LOGICAL, NUMBER, TEXT, Value

@@ -13,7 +13,8 @@ from typing import Final, NamedTuple
 
 import numpy as np
 
-from xlmc.engine.graph.graph import Dag, Input
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Input
 from xlmc.engine.graph.readiness import order_by_need
 from xlmc.engine.llvm.loop import Load
 from xlmc.engine.llvm.loop_rules import Literal, LoopRule, Operand, is_number

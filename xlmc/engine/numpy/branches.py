@@ -16,7 +16,8 @@ from typing import Any, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag, Input, Select
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant, Input, Select
 from xlmc.engine.graph.trial_sets import ALL_TRIALS, DEEPEST_BRANCHES, TrialSet, common_set
 from xlmc.engine.numpy.steps import Frame, Step, make_step, reads
 from xlmc.excel.functions import Kind

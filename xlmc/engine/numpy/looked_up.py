@@ -13,7 +13,8 @@ from typing import Any, Final, NamedTuple
 import numpy as np
 
 from xlmc.engine.cache_lines import aligned_array
-from xlmc.engine.graph.graph import Apply, Constant, Dag
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant
 from xlmc.engine.graph.table_functions import TableFunction, table_function_of
 from xlmc.engine.numpy.sine_pairs import COSINE, SINE, sines_with_cosines
 from xlmc.engine.numpy.steps import plain_constant

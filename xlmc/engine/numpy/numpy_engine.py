@@ -15,7 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.engine import Column, Evaluator, Target, column_of
-from xlmc.engine.graph.graph import Dag, Input, constants
+from xlmc.engine.graph.graph import Dag, constants
+from xlmc.engine.graph.nodes import Input
 from xlmc.engine.graph.readiness import most_waiting, order_by_need
 from xlmc.engine.graph.trial_sets import ALL_TRIALS, TrialSet
 from xlmc.engine.numpy.branches import SURVIVORS, Placement, branch_step

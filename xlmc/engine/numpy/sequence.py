@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.engine.cache_lines import aligned_array
-from xlmc.engine.graph.graph import Apply, Constant, Dag, IfErrorNode, Select, uses
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Select, uses
 from xlmc.engine.graph.number_lookups import key_of, lookup_of
 from xlmc.engine.numpy.looked_up import LookedUp
 from xlmc.engine.numpy.sine_pairs import sines_with_cosines

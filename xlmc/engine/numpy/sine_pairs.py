@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Final
 
-from xlmc.engine.graph.graph import Apply, Dag
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply
 from xlmc.excel.functions import Kind
 
 __all__ = ["COSINE", "SINE", "sines_with_cosines"]

@@ -13,19 +13,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.graph.graph import (
-    Apply,
-    Constant,
-    Dag,
-    IfErrorNode,
-    Ragged,
-    Range,
-    Select,
-    by_trial,
-    evaluate_node,
-    in_own_memory,
-    uses,
-)
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.node_values import Ragged, by_trial, evaluate_node, in_own_memory
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Range, Select, uses
 from xlmc.excel.functions import Function, Kind
 from xlmc.excel.functions.budget import ask_for_live
 from xlmc.excel.functions.denormals import Underflow, flush, tiny_to_zero

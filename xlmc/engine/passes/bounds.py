@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from typing import Final
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag, Input, Select
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant, Input, Select
 from xlmc.excel.functions.fifteen_digits import SNAP_TO_ZERO
 from xlmc.excel.functions.lookup.search_and_pick import CELL_AT
 from xlmc.excel.functions.values import NUMBER

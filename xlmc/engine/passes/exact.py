@@ -15,7 +15,8 @@ import mpmath
 import numpy as np
 from mpmath import mp, mpf
 
-from xlmc.engine.graph.graph import Apply, Constant, Dag, IfErrorNode, Input, Range, Select
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select
 from xlmc.engine.passes.random_rounding import formula_of
 from xlmc.errors import ErrorCode
 from xlmc.excel.functions.fifteen_digits import SNAP_TO_ZERO

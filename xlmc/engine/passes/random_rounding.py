@@ -14,19 +14,9 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.engine.graph.graph import (
-    Apply,
-    Constant,
-    Dag,
-    IfErrorNode,
-    Input,
-    Node,
-    Ragged,
-    Range,
-    Select,
-    evaluate_node,
-    uses,
-)
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.node_values import Ragged, evaluate_node
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, uses
 from xlmc.excel.functions import Kind
 from xlmc.excel.functions.fifteen_digits import SNAP_TO_ZERO
 from xlmc.excel.functions.values import ERROR, LOGICAL, Floats, Value

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.engine.graph.graph import Input
+from xlmc.engine.graph.nodes import Input
 from xlmc.engine.passes.random_rounding import RandomRounding, closure, evaluate, formula_of, numbers_of, term_sizes
 from xlmc.excel.functions.budget import TooLargeError
 from xlmc.montecarlo.statistics.number_text import count_text, number_text

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Final
 
-from xlmc.engine.graph.graph import Target
+from xlmc.engine.graph.nodes import Target
 from xlmc.engine.passes.bounds import Bounds, NodeBounds
 from xlmc.excel.functions.values import LOGICAL, NUMBER
 from xlmc.montecarlo.model.needed import filter_condition, filter_limits

@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 
-from xlmc.engine.graph.graph import Apply, Input, Node, Range, Select, uses
 from xlmc.engine.graph.lowering import Lowering
+from xlmc.engine.graph.nodes import Apply, Input, Node, Range, Select, uses
 from xlmc.errors import DefinitionError, ErrorCode, Notice
 from xlmc.excel.address import InFormula
 from xlmc.excel.formula import ir

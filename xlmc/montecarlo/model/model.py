@@ -14,8 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.engine.engine import TEXT_RESULT, Column, Evaluator, Program, Target
 from xlmc.engine.engines import ENGINES
-from xlmc.engine.graph.graph import Constant, Select
 from xlmc.engine.graph.lowering import Lowering, lower_until_complete
+from xlmc.engine.graph.nodes import Constant, Select
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.engine.passes.bounds import Bounds, NodeBounds
 from xlmc.errors import Notice, SimulationError

@@ -12,7 +12,7 @@ import numpy as np
 from xlmc.analysis.studies.stability.case import Case, Floats
 from xlmc.analysis.studies.stability.digit_findings import Finding, Level
 from xlmc.analysis.studies.stability.formula_trees import replace_part, terms
-from xlmc.engine.graph.graph import Constant
+from xlmc.engine.graph.nodes import Constant
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir
 from xlmc.montecarlo.statistics.number_text import styled_text

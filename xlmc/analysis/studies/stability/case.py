@@ -16,7 +16,7 @@ from xlmc.analysis.studies.derivatives import derivatives
 from xlmc.analysis.studies.stability.digit_findings import Where
 from xlmc.analysis.studies.stability.formula_trees import Trees
 from xlmc.engine.engine import Target
-from xlmc.engine.graph.graph import Apply, Input, uses
+from xlmc.engine.graph.nodes import Apply, Input, uses
 from xlmc.engine.passes.derivatives import Derivatives
 from xlmc.engine.passes.exact import Exact, as_double
 from xlmc.engine.passes.random_rounding import (

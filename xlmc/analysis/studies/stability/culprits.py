@@ -14,7 +14,7 @@ import numpy as np
 
 from xlmc.analysis.studies.stability.case import Case, Floats
 from xlmc.analysis.studies.stability.formula_trees import factors, terms
-from xlmc.engine.graph.graph import Input
+from xlmc.engine.graph.nodes import Input
 from xlmc.engine.passes.random_rounding import closure, evaluate, evaluate_changes, formula_of, numbers_of
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir

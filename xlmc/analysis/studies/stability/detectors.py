@@ -11,7 +11,7 @@ from xlmc.analysis.studies.stability.case import Case, Floats
 from xlmc.analysis.studies.stability.digit_findings import Finding, Level, Where
 from xlmc.analysis.studies.stability.quadrant import arctangents, guards
 from xlmc.analysis.studies.stability.rewriting import angles_in_degrees, without_quotient
-from xlmc.engine.graph.graph import Constant, uses
+from xlmc.engine.graph.nodes import Constant, uses
 from xlmc.engine.passes.random_rounding import formula_of, numbers_of
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir

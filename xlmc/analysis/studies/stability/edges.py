@@ -12,7 +12,7 @@ import numpy as np
 from xlmc.analysis.studies.stability.case import Bools, Case, Floats
 from xlmc.analysis.studies.stability.digit_findings import Finding, Level
 from xlmc.analysis.studies.stability.formula_trees import terms
-from xlmc.engine.graph.graph import Constant
+from xlmc.engine.graph.nodes import Constant
 from xlmc.engine.passes.random_rounding import numbers_of
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir

@@ -20,7 +20,7 @@ from xlmc.analysis.studies.stability.quadrant import lost_quadrants
 from xlmc.analysis.studies.stability.repeated_steps import as_one
 from xlmc.analysis.studies.stability.rounding_errors import cell_digits, lost_digits
 from xlmc.analysis.studies.stability.starts import dependence_on_starts
-from xlmc.engine.graph.graph import Apply
+from xlmc.engine.graph.nodes import Apply
 from xlmc.engine.passes.derivatives.sweep import owners
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.simulation.simulate import simulate

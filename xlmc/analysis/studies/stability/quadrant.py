@@ -20,7 +20,8 @@ from xlmc.analysis.studies.stability.digit_findings import Finding, Level
 from xlmc.analysis.studies.stability.formula_trees import factors
 from xlmc.analysis.studies.stability.momentum import times
 from xlmc.analysis.studies.stability.rewriting import with_quadrant
-from xlmc.engine.graph.graph import Apply, Ragged, uses
+from xlmc.engine.graph.node_values import Ragged
+from xlmc.engine.graph.nodes import Apply, uses
 from xlmc.engine.passes.random_rounding import evaluate_changes, formula_of
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir

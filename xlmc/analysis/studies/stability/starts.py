@@ -9,8 +9,8 @@ import numpy as np
 
 from xlmc.analysis.studies.stability.case import Case, Floats
 from xlmc.analysis.studies.stability.digit_findings import Finding, Level
-from xlmc.engine.graph.graph import Constant
 from xlmc.engine.graph.iteration import IteratedCells
+from xlmc.engine.graph.nodes import Constant
 from xlmc.engine.passes.random_rounding import evaluate_changes, numbers_of
 from xlmc.excel.functions.values import NUMBER, Value
 from xlmc.montecarlo.statistics.number_text import count_text, number_text

@@ -11,20 +11,10 @@ from typing import Final
 
 import numpy as np
 
-from xlmc.engine.graph.graph import (
-    Apply,
-    Constant,
-    Dag,
-    IfErrorNode,
-    Input,
-    Node,
-    Ragged,
-    Range,
-    Select,
-    evaluate_node,
-    uses,
-)
+from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.lowering import Lowering
+from xlmc.engine.graph.node_values import Ragged, evaluate_node
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, uses
 from xlmc.engine.passes.derivatives import elementary, lookup_rules, sums  # noqa: F401 - they register their rules
 from xlmc.engine.passes.derivatives.conditions import if_, if_error
 from xlmc.engine.passes.derivatives.derivative import Notes

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from xlmc.engine.engine import column_of
-from xlmc.engine.graph.graph import align, corner, single
+from xlmc.engine.graph.graph import Dag
+from xlmc.engine.graph.node_values import align, corner, evaluate_node, single
+from xlmc.engine.graph.nodes import Range
 from xlmc.errors import ErrorCode
-from xlmc.excel.functions.values import constant, from_objects
+from xlmc.excel.functions.values import Value, constant, from_objects
 
 NA, CALC = ErrorCode.NA, ErrorCode.CALC
 
@@ -44,3 +46,11 @@ def test_a_cell_shows_the_upper_left_value_of_an_array():
     assert corner(array([[5.0, 6.0], [7.0, 8.0]])).objects().tolist() == [5.0]
     assert corner(from_objects(np.empty((1, 0, 1), object))).objects().tolist() == [CALC]
     assert column_of(array([[5.0, 6.0]], trials=3), 3).values.tolist() == [5.0] * 3
+
+
+def test_a_range_of_no_trials():
+    dag = Dag()
+    a, one = dag.input("a"), dag.constant(constant(1.0))
+    node = dag.nodes[dag.add(Range(((a, one),)))]
+    values = {a: Value.of_numbers(np.empty(0)), one: constant(1.0)}
+    assert evaluate_node(node, values).shape == (0, 1, 2)

@@ -384,3 +384,38 @@ def test_scenarios_compare_counted_answers_by_their_shares(tmp_path):
     assert found["Verdict"].text == "middle"
     assert found["Verdict"].differences["mean"].error > 0.0
     assert found["Avoided"].differences["mean"].value > 0.0
+
+
+def test_a_text_that_is_another_in_every_trial_fills_no_output(tmp_path):
+    book = openpyxl.Workbook()
+    sheet = book.active
+    sheet.title = "Model"
+    sheet["A1"], sheet["B1"], sheet["B2"] = "Cost", 5.0, '=IF(B1<0.5,"cheap",TEXT(B1,"0.000000"))'
+    for row in (["Name", "Cell", "Distribution", "Low", "High"], ["Cost", "Model!B1", "Uniform", 0, 1]):
+        sheet.append(row)
+    sheet.append([])
+    for row in (["Name", "Cell"], ["Label", "Model!B2"]):
+        sheet.append(row)
+    sheet.add_table(Table(displayName="xlmc_assumptions", ref="A3:E4"))
+    sheet.add_table(Table(displayName="xlmc_forecasts", ref="A6:B7"))
+    sheet["B1"] = 0.25
+    book.save(tmp_path / "labels.xlsx")
+    run = load(tmp_path / "labels.xlsx").simulate(trials=5_000)
+    shares = run["Label"].categories
+    left = 5_000 - sum(round(5_000 * share.value) for share in [*shares.values()][:20])
+    said = f"{len(shares) - 20:,} rarer texts"
+    run.save_page(tmp_path / "out.html")
+    page = (tmp_path / "out.html").read_text(encoding="utf-8")
+    assert said in page
+    assert page.count("<tr") < 200
+    for name in ("out.pdf", "out.docx"):
+        run.save_report(tmp_path / name)
+        text = text_of(tmp_path / name)
+        assert said.replace(" ", "") in text, name
+        assert len(text) < 20_000, name
+    run.save(tmp_path / "out.xlsx")
+    results = openpyxl.load_workbook(tmp_path / "out.xlsx")
+    for name, column in (("Results", 1), ("Certainty", 2)):
+        rows = [row for row in results[name].iter_rows(values_only=True) if row[column - 1] == said]
+        assert [row[column] for row in rows] == [left], name
+        assert results[name].max_row < 100, name

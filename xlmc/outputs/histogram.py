@@ -394,7 +394,7 @@ class Figure:
             said = f"yes in {answer_text(row)} of {count_text(row.trials)} accepted trials, else no"
         if row.categories:
             shares = [f"{text or '(empty)'} {share_text(share)}" for text, share in row.categories.items()]
-            more = f"; {len(shares) - _MOST_SAID} more texts" if len(shares) > _MOST_SAID else ""
+            more = f"; {count_text(len(shares) - _MOST_SAID)} more texts" if len(shares) > _MOST_SAID else ""
             said = f"{'; '.join(shares[:_MOST_SAID])}{more}; of {count_text(row.trials)} accepted trials"
         return said
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
@@ -43,6 +43,7 @@ __all__ = [
     "error_sentence",
     "estimate_text",
     "first_forecasts",
+    "frequent_texts",
     "percent",
     "question",
     "range_heading",
@@ -396,6 +397,19 @@ def _count_text(count: int, one: str, several: str) -> str:
 def shares_of(answer: SummaryRow | ForecastResult) -> Mapping[str, Estimate]:
     """Return the share of each text, or of yes and no; nothing of numbers."""
     return answer.categories if answer.yes is None else {"yes": answer.yes, "no": complement(answer.yes)}
+
+
+def frequent_texts(shares: Mapping[str, Estimate]) -> tuple[dict[str, Estimate], str, float]:
+    """Return the texts that a table tells, what it calls all the others, and their share; ("", 0) without others."""
+    told = dict([*shares.items()][:_MOST_TEXTS])
+    others = len(shares) - len(told)
+    if others == 0:
+        return told, "", 0.0
+    return told, f"{count_text(others)} rarer texts", 1.0 - math.fsum(share.value for share in told.values())
+
+
+_MOST_TEXTS: Final = 20
+"""Texts of an answer that a table tells one by one: a text with a number in it may be another in every trial."""
 
 
 def rejection_rows(simulation: RunResult) -> list[tuple[str, str, str, str]]:

@@ -50,6 +50,7 @@ from xlmc.outputs.summary import (
     error_sentence,
     estimate_text,
     first_forecasts,
+    frequent_texts,
     percent,
     question,
     range_heading,
@@ -153,10 +154,13 @@ def _texts(material: Material, rows: Sequence[SummaryRow]) -> Iterator[Table]:
     """How often each text is the answer, for each forecast whose answers are texts."""
     for row in rows:
         if row.categories:
+            told, others, left = frequent_texts(row.categories)
             lines = [
                 (text or "(empty)", count_text(round(share.value * share.n)), share_text(share))
-                for text, share in row.categories.items()
+                for text, share in told.items()
             ]
+            if others:
+                lines.append((others, count_text(round(left * row.trials)), f"{number_text(100.0 * left, 3)} %"))
             caption = f"{row.name}: how often each text is the answer."
             yield material.table(caption, (row.name, "Trials", "Share"), lines, (3, 1, 1.5), (1, 2))
 

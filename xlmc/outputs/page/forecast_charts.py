@@ -14,7 +14,7 @@ from xlmc.outputs.document.element import EMPTY, Html, element, join, void
 from xlmc.outputs.document.html_writer import estimate_html, picture_html, share_html
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.page.payload import counted_figures, most_values, overlays_of
-from xlmc.outputs.summary import SummaryRow, first_forecasts, percent, shares_of
+from xlmc.outputs.summary import SummaryRow, first_forecasts, frequent_texts, percent, shares_of
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
@@ -84,10 +84,14 @@ def _how_to_read(simulation: RunResult, figures: Sequence[Figure]) -> Iterator[H
 def _shares(figure: Figure) -> Html:
     """Return the bars of an answer that is yes or no, or a text, and the share of each."""
     shares = shares_of(figure.answer)
-    rows = (
+    told, others, left = frequent_texts(shares)
+    rows = [
         element("tr", element("th", text or "(empty)", scope="row"), element("td", share_html(share), class_="number"))
-        for text, share in shares.items()
-    )
+        for text, share in told.items()
+    ]
+    if others:
+        share = f"{number_text(100.0 * left, 3)} %"
+        rows.append(element("tr", element("th", others, scope="row"), element("td", share, class_="number")))
     drawing = element(
         "div",
         picture_html(shares_chart(figure)),

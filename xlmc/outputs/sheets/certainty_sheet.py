@@ -9,7 +9,7 @@ exact; a criterion of COUNTIFS is a text of 15 digits.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,7 +20,7 @@ from xlmc.montecarlo.statistics import proportion
 from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.cells import Shown
-from xlmc.outputs.summary import shares_of
+from xlmc.outputs.summary import frequent_texts, shares_of
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -69,7 +69,7 @@ def write_ranges(page: Page, simulation: RunResult, names: Collection[str] | Non
         row
         for name, result in results.items()
         for row in (
-            *(_share_line(name, *each) for each in shares_of(result).items()),
+            *_share_lines(name, result),
             *(_line(name, each) for each in certainties(result)),
         )
     ]
@@ -81,6 +81,15 @@ def write_ranges(page: Page, simulation: RunResult, names: Collection[str] | Non
 
 def _line(name: str, found: Certainty) -> list[Shown]:
     return _share_line(name, found.words, found.share)
+
+
+def _share_lines(name: str, result: ForecastResult) -> Iterator[list[Shown]]:
+    told, others, left = frequent_texts(shares_of(result))
+    for text, share in told.items():
+        yield _share_line(name, text, share)
+    if others:
+        count = cells.count(round(left * result.statistics.trials))
+        yield [Shown(name, look="name"), Shown(others), count, Shown(left, "0.0%"), *[cells.BLANK] * 3]
 
 
 def _share_line(name: str, words: str, share: Estimate) -> list[Shown]:

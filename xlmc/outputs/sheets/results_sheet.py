@@ -13,7 +13,16 @@ from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.sheets import cells
 from xlmc.outputs.sheets.accounting import write_accounting, write_checks
 from xlmc.outputs.sheets.cells import Shown
-from xlmc.outputs.summary import SummaryRow, base_case, base_text, error_sentence, percent, range_heading, summarise
+from xlmc.outputs.summary import (
+    SummaryRow,
+    base_case,
+    base_text,
+    error_sentence,
+    frequent_texts,
+    percent,
+    range_heading,
+    summarise,
+)
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -82,7 +91,12 @@ def write_texts(page: Page, rows: Sequence[SummaryRow]) -> None:
             continue
         page.heading(f"{row.name}: how often each text is the answer")
         head = f"{row.name} ({row.units})" if row.units else row.name
-        page.table([head, "Trials", "Share", "±", "95 % from", "to"], [_text(*each) for each in row.categories.items()])
+        told, others, left = frequent_texts(row.categories)
+        lines = [_text(*each) for each in told.items()]
+        if others:
+            last = [Shown(others, look="name"), cells.count(round(left * row.trials)), Shown(left, "0.0%")]
+            lines.append([*last, *[cells.BLANK] * 3])
+        page.table([head, "Trials", "Share", "±", "95 % from", "to"], lines)
 
 
 def _text(text: str, share: Estimate) -> list[Shown]:

@@ -133,7 +133,7 @@ def _texts_text(categories: Mapping[str, Estimate]) -> str:
     first, share = next(iter(categories.items()))
     if share.value == 1.0:
         return f"{first or '(empty)'} in {percent_text(share)}"
-    more = f", and {len(said) - _MOST_TEXTS} rarer texts" if len(said) > _MOST_TEXTS else ""
+    more = f", and {count_text(len(said) - _MOST_TEXTS)} rarer texts" if len(said) > _MOST_TEXTS else ""
     return ", ".join([f"{first or '(empty)'} with probability {percent_text(share)}", *said[1:_MOST_TEXTS]]) + more
 
 

@@ -14,7 +14,7 @@ from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell, InFormula
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.loop.blocks import portions
-from xlmc.montecarlo.model.model import lower_needed
+from xlmc.montecarlo.model.lowered_cells import lower_needed
 
 if TYPE_CHECKING:
     from xlmc.engine.graph.lowering import Lowering

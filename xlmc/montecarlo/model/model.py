@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Final, Self
@@ -12,24 +12,20 @@ from typing import Final, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.engine.engine import TEXT_RESULT, Column, Evaluator, Program, Target
+from xlmc.engine.engine import Evaluator, Program, Target
 from xlmc.engine.engines import ENGINES
-from xlmc.engine.graph.lowering import Lowering, lower_until_complete
-from xlmc.engine.graph.nodes import Constant, Select
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.engine.passes.bounds import Bounds, NodeBounds
 from xlmc.errors import Notice, SimulationError
 from xlmc.excel.address import Cell, host_of
 from xlmc.excel.formula import ir
 from xlmc.excel.functions import Kind
-from xlmc.excel.functions.values import Value
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions import stating
-from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Forecast
+from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
 from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.stating import Kind as StatedAs
-from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.cell_forms import formats_of, forms_of
 from xlmc.montecarlo.model.correlating import (
     copula_groups,
@@ -45,53 +41,22 @@ from xlmc.montecarlo.model.forecast_filters import (
     conditions_of,
     filters_by_forecast,
 )
+from xlmc.montecarlo.model.forecast_values import are_texts, is_two_valued
 from xlmc.montecarlo.model.impossible_draws import possible_draws, with_errors
+from xlmc.montecarlo.model.input_points import input_points
+from xlmc.montecarlo.model.lowered_cells import lower_checks, lower_needed
 from xlmc.montecarlo.model.model_notices import example_notices, heavy_notices, still_cells, still_notices
-from xlmc.montecarlo.model.needed import (
-    Needed,
-    chances_of,
-    definitions_of_checks,
-    drawing_order,
-    filter_condition,
-    find_needed,
-    refuse_without_base,
-    targets_of,
-)
+from xlmc.montecarlo.model.needed import chances_of, filter_condition
+from xlmc.montecarlo.model.shared_parts import asks_for_the_same, hull
 from xlmc.montecarlo.model.solving import with_solved_cells
 from xlmc.montecarlo.model.stated_formulas import with_stated_formulas
 from xlmc.montecarlo.sampling.draws import CorrelatedGroup, Draw, DrawStage, Filler, Sampler
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 
-__all__ = ["CompiledModel", "lower_needed"]
+__all__ = ["CompiledModel"]
 
 _MOST_GROWN: Final = 4
 """Nodes that changed limits of filters may have added, as a multiple of the first ones, before all are made anew."""
-
-
-def lower_needed(workbook: Workbook, definitions: Definitions, *, one_trial: bool = False) -> tuple[Needed, Lowering]:
-    """Find what the forecasts and filters need, and its nodes; of `one_trial`, with all assumptions frozen, see
-    `Lowering`.
-
-    Raises:
-        FormulaError, DefinitionError: as for `load`.
-    """
-    definitions = replace(definitions, assumptions=(*definitions.assumptions, *chances_of(definitions.filters)))
-    inputs = {a.cell: a.name for a in definitions.assumptions if not a.frozen}
-    frozen = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
-    found: list[Needed] = []
-
-    def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
-        found.append(find_needed(workbook, definitions, more))
-        return Lowering(found[-1].graph, inputs, frozen, one_trial=one_trial)
-
-    lowering = lower_until_complete(lower)
-    lowering.refuse_cells_beyond()
-    needed = found[-1]
-    if lowering.led_to:
-        named = {a.name: a for a in definitions.assumptions}
-        live = [named[name] for name in needed.live]  # in this order, on which correlated draws depend
-        needed = replace(needed, stages=drawing_order(needed.graph, live, lowering.led_to))
-    return needed, lowering
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,86 +67,8 @@ class _Compiled:
     ends: Mapping[str, Bounds]
 
 
-def _hull(first: Mapping[str, Bounds], second: Mapping[str, Bounds]) -> dict[str, Bounds]:
-    """Return the ends that hold the draws of two models, and more where a range was moved; none where either
-    has none.
-    """
-    return {name: _wider(ends, second[name]) for name, ends in first.items() if name in second}
-
-
-def _wider(first: Bounds, second: Bounds) -> Bounds:
-    """Bounds that hold both; those of a range that was moved twice as wide, as it will be moved again.
-
-    They stay on their side of 0, which roots and divisors depend on.
-    """
-    low, high = min(first[0], second[0]), max(first[1], second[1])
-    if (low, high) == first:
-        return first
-    lowest, highest = low - (high - low), high + (high - low)
-    return max(lowest, 0.0) if low >= 0.0 else lowest, min(highest, 0.0) if high <= 0.0 else highest
-
-
-def _asks_for_the_same(old: Definitions, new: Definitions, live: Collection[str]) -> bool:
-    """Whether two definitions ask for the same cells, so that only numbers can be others.
-
-    Args:
-        old: of a workbook.
-        new: of the same one, changed.
-        live: names of the assumptions that the old ones draw.
-    """
-    if (old.checks, old.forecast_filters) != (new.checks, new.forecast_filters):
-        return False
-    if [_asked_of(each) for each in old.forecasts] != [_asked_of(each) for each in new.forecasts]:
-        return False
-    if old.rewritten is not new.rewritten:
-        return False
-    if len(old.assumptions) != len(new.assumptions) or len(old.filters) != len(new.filters):
-        return False
-    pairs = zip(old.assumptions, new.assumptions, strict=True)
-    if any(a is not b and _cells_of(a, live) != _cells_of(b, live) for a, b in pairs):
-        return False
-    return all(targets_of((), (a,)) == targets_of((), (b,)) for a, b in zip(old.filters, new.filters, strict=True))
-
-
-def _asked_of(forecast: Forecast) -> Forecast:
-    """Return what is computed of a forecast, without how it is stated."""
-    return replace(forecast, threshold=None, central=0.5)
-
-
-def _cells_of(assumption: Assumption, live: Collection[str]) -> tuple[object, ...]:
-    """Return what the nodes depend on of an assumption; the base value of a drawn assumption is not among it."""
-    frozen = None if assumption.name in live else assumption.base
-    return assumption.name, assumption.cell, assumption.frozen, assumption.formulas, assumption.data, frozen
-
-
-def _lower_checks(workbook: Workbook, definitions: Definitions, live: Collection[str]) -> Lowering:
-    """Return the nodes of the checks, apart from those of the run, which they must not change.
-
-    Raises:
-        FormulaError, DefinitionError: a check cannot be computed.
-    """
-    asked = definitions_of_checks(definitions, live)
-    needed, lowering = lower_needed(workbook, asked)
-    refuse_without_base(definitions.checks, needed, asked)
-    for check in definitions.checks:
-        lowering.target(Target(check.cell, check.cell))
-    return lowering
-
-
 _TRIED: Final = 64
 """Trials that tell whether an answer is a text."""
-
-
-def _is_one_or_zero(value: Value) -> bool:
-    return value.numbers.size == 1 and value.numbers.item() in (0.0, 1.0)
-
-
-def _are_texts(column: Column) -> bool:
-    """Whether there are texts that say something, and no numbers."""
-    if column.codes is None or column.texts is None:
-        return False
-    texts = column.texts[column.codes == TEXT_RESULT]
-    return bool(np.all(column.codes > 0)) and any(texts)
 
 
 class CompiledModel:
@@ -239,7 +126,7 @@ class CompiledModel:
         self._define(definitions, draws)
         self._check_targets()
         self._nodes = len(self.lowering.dag.nodes)
-        self._checks = _lower_checks(workbook, definitions, frozenset(self.needed.live)) if self.checks else None
+        self._checks = lower_checks(workbook, definitions, frozenset(self.needed.live)) if self.checks else None
         self._take_notices()
 
     def _define(self, definitions: Definitions, known: Mapping[str, Draw]) -> None:
@@ -305,7 +192,7 @@ class CompiledModel:
         own = self.definitions
         if len(self.lowering.dag.nodes) > (1 + _MOST_GROWN) * self._nodes:
             self._make_anew()
-        if not _asks_for_the_same(own, definitions, frozenset(self.needed.live)):
+        if not asks_for_the_same(own, definitions, frozenset(self.needed.live)):
             found = type(self)(workbook, definitions, self.path)
             found._folded = self._folded
             return found
@@ -404,41 +291,8 @@ class CompiledModel:
         return {f.name: column.as_floats() for f, column in zip(self.forecasts, columns, strict=True)}
 
     def points(self, inputs: Mapping[str, ArrayLike]) -> tuple[dict[str, NDArray[np.float64]], int]:
-        """Values of every live assumption as engines take them: name -> `(n,)`, in the order of `live`, and `n`.
-
-        Args:
-            inputs: name of the assumption -> `(n,)` or a number.
-
-        Raises:
-            SimulationError: an assumption is missing, unknown or frozen, or the values are of different lengths.
-        """
-        spelt = self._spelt(inputs)
-        given = {spelt[name]: np.asarray(values, np.float64) for name, values in inputs.items()}
-        sizes = {values.size for values in given.values() if values.ndim} - {1} or {1}
-        if len(sizes) > 1 or any(values.ndim > 1 for values in given.values()):
-            hint = "give lists of the same length"
-            raise SimulationError("an assumption takes one number or one list of numbers", hint=hint)
-        (n,) = sizes
-        return {a.name: np.ascontiguousarray(np.broadcast_to(given[a.name], (n,))) for a in self.live}, n
-
-    def _spelt(self, names: Iterable[str]) -> dict[str, str]:
-        """Names of all live assumptions, as somebody typed them -> as defined.
-
-        Raises:
-            SimulationError: one is missing, unknown or frozen.
-        """
-        known, found = {name_key(a.name): a for a in self.assumptions}, dict[str, str]()
-        for name in names:
-            assumption = known.get(name_key(name))
-            if assumption is None:
-                hint = f"choose from {', '.join(repr(a.name) for a in self.live)}"
-                raise SimulationError(f"there is no assumption {name!r}", hint=hint)
-            if assumption.frozen:
-                raise SimulationError(f"the assumption {name!r} is frozen", hint="it is held at its cell's own value")
-            found[name] = assumption.name
-        if missing := [a.name for a in self.live if a.name not in found.values()]:
-            raise SimulationError(f"no values for the assumption {missing[0]!r}", hint="give every live assumption")
-        return found
+        """Return the values of every live assumption as engines take them, and how many, see `input_points`."""
+        return input_points(self.assumptions, self.live, inputs)
 
     def program(self, engine: str) -> Program:
         """Compile the filters and forecasts for an engine once.
@@ -451,7 +305,7 @@ class CompiledModel:
             raise SimulationError(f"there is no engine {engine!r}", hint=f"choose one of {', '.join(ENGINES)}")
         row, known, ends = ENGINES[engine], self._programs.get(engine), self._ends
         if known is not None and known.ends != ends:
-            ends = _hull(known.ends, ends)
+            ends = hull(known.ends, ends)
         if known is None or (row.bounded and known.ends != ends):
             parts = self.lowering, self.filter_targets, self.answer_targets, self.fallible
             more = {"bounds": NodeBounds(self.lowering.dag, ends)} if row.bounded else {}
@@ -538,34 +392,16 @@ class CompiledModel:
         if unsure:
             targets = [self._forecast_targets[number] for number in unsure]
             columns = self.evaluator(targets, _TRIED).filters(self.sampler(0, _TRIED).draw(0), _TRIED)
-            found |= {number for number, column in zip(unsure, columns, strict=True) if _are_texts(column)}
+            found |= {number for number, column in zip(unsure, columns, strict=True) if are_texts(column)}
         return tuple(sorted(found))
 
     @cached_property
     def two_valued(self) -> frozenset[str]:
         """The names of the forecasts whose formulas give TRUE and FALSE, or 1 and 0 by `IF`, and nothing else."""
         targets = zip(self.forecasts, self._forecast_targets, strict=True)
-        return frozenset(each.name for each, target in targets if self._is_two_valued(self.lowering.target(target)))
-
-    def _is_two_valued(self, node: int) -> bool:
-        """Return whether a node is a logical, or what `IF` chooses there from are logicals and constants 1 and 0.
-
-        A number that is known before the run, such as a speed that is held at 0, is neither.
-        """
-        dag, seen, waiting = self.lowering.dag, set[int](), [node]
-        if isinstance(dag.nodes[node], Constant) and dag.types[node] is Kind.NUMBER:
-            return False
-        while waiting:
-            at = waiting.pop()
-            found = dag.nodes[at]
-            if at in seen or dag.types[at] is Kind.LOGICAL:
-                continue
-            seen.add(at)
-            if isinstance(found, Select):
-                waiting += [found.yes, found.no]
-            elif not (isinstance(found, Constant) and dag.types[at] is Kind.NUMBER and _is_one_or_zero(found.value)):
-                return False
-        return True
+        return frozenset(
+            each.name for each, target in targets if is_two_valued(self.lowering.dag, self.lowering.target(target))
+        )
 
     @cached_property
     def formats(self) -> dict[str, str]:

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import gc
+import mmap
 import os
 import tempfile
 from pathlib import Path
@@ -106,6 +107,78 @@ def test_columns_in_one_piece_of_memory_are_what_was_added(monkeypatch, in_memor
 
 
 REAL = np.dtype(np.float64)
+
+
+def stored_files(monkeypatch, tmp_path, expected, rows, blocks=4):
+    """Columns of `rows` numbers each, whose store has room for one block alone; and the sizes of its files."""
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    monkeypatch.setattr(column_store, "WRITTEN", 0)
+    keys = range(len(expected))
+    store = ColumnStore(dict.fromkeys(keys, REAL), dict(zip(keys, expected, strict=True)), in_memory=0)
+    for part in np.array_split(np.arange(float(rows)), blocks):
+        for key in keys:
+            store.add(key, part + 1e6 * key)
+        store.write_if_full()
+    found = store.columns({str(key): key for key in keys})
+    assert all(np.array_equal(found[str(key)], np.arange(float(rows)) + 1e6 * key) for key in keys)
+    (folder,) = tmp_path.iterdir()
+    return {file.name: file.stat().st_size for file in folder.iterdir()}
+
+
+def test_short_columns_lie_in_one_file(monkeypatch, tmp_path):
+    files = stored_files(monkeypatch, tmp_path, [10_000] * 300, 10_000)
+    assert list(files) == ["columns"]
+    assert 300 * 80_000 <= files["columns"] <= 300 * (80_000 + mmap.ALLOCATIONGRANULARITY)
+
+
+@pytest.mark.parametrize(
+    ("expected", "own"),
+    [
+        pytest.param([10_000, 2_000_000], {"1.column"}, id="one-that-will-be-long"),
+        pytest.param([10_000, 200_000], {"1.column"}, id="one-of-which-most-is-not-accepted"),
+        pytest.param([10_000, 0], {"1.column"}, id="one-of-which-nothing-is-known"),
+        pytest.param([10_000, 5_000], {"1.column"}, id="one-that-gets-longer-than-it-should"),
+        pytest.param([4_999, 2_500], {"0.column", "1.column"}, id="all-get-longer"),
+    ],
+)
+def test_other_columns_have_files_of_their_own(monkeypatch, tmp_path, expected, own):
+    files = stored_files(monkeypatch, tmp_path, expected, 10_000)
+    assert files.keys() - {"columns"} == own
+    assert {files[name] for name in own} == {80_000}
+
+
+def test_a_column_that_moves_to_its_own_file_stays_where_it_was_given_away(monkeypatch):
+    monkeypatch.setattr(column_store, "WRITTEN", 0)
+    store, given = ColumnStore({"x": REAL, "y": REAL}, {"x": 6, "y": 100}, in_memory=0), []
+    for number in range(5):
+        for key in "xy":
+            store.add(key, np.full(3, float(number)))
+        store.write_if_full()
+        given.append(store.columns({"x": "x", "y": "y"}))
+    for number, columns in enumerate(given):
+        for column in columns.values():
+            assert column.tolist() == [float(each) for each in range(number + 1) for _ in range(3)]
+
+
+def test_a_column_without_numbers_needs_no_file(monkeypatch, tmp_path):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    store = ColumnStore(TYPES, {"x": 100, "never": 100}, in_memory=0)
+    store.add("x", np.arange(100.0))
+    store.write_if_full()
+    assert store.columns(NAMES)["none"].tolist() == []
+    (folder,) = tmp_path.iterdir()
+    assert [file.name for file in folder.iterdir()] == ["columns"]
+
+
+@pytest.mark.parametrize("rows", [0, 2, 5, None])
+def test_first_rows_of_columns_of_different_lengths(rows):
+    store = ColumnStore(TYPES, {"x": 4, "n": 3}, in_memory=0)
+    store.add("x", np.arange(4.0))
+    store.add("n", np.arange(3))
+    store.write_if_full()
+    found = store.columns(NAMES, rows)
+    assert found["speed"].tolist() == [0, 1, 2, 3][:rows]
+    assert found["trial"].tolist() == [0, 1, 2][:rows]
 
 
 def test_files_grow_at_their_end():

@@ -31,6 +31,12 @@ def test_picked_is_a_fancy_index(stored, places):
     assert picked(values, where).tolist() == picked(stored(values), where).tolist() == values[where].tolist()
 
 
+def test_picked_from_a_column_of_more_pages_than_are_touched_at_once(stored):
+    values = np.arange(passes._PICKED_FROM / 8 + 1)
+    where = np.random.default_rng(5).integers(0, values.size, 2_000)
+    assert picked(stored(values), where).tolist() == values[where].tolist()
+
+
 @given(st.lists(st.sampled_from((1.0, 2.5, np.nan)), max_size=50))
 def test_numbers_are_all_but_nan(stored, values):
     column = np.array(values, float)

@@ -1,7 +1,8 @@
 """Columns in files of a temporary folder, which goes when nothing needs it any more.
 
-A `ColumnStore` gathers columns and writes them once they are long; a `Folder` holds their files; each file is read as
-an array that is mapped into memory.
+A `ColumnStore` gathers columns and writes them once they are long; a `Folder` holds their files; a column is read as an
+array that is mapped into memory. Columns that will not be long lie in one file, each at a place of its own: to make,
+to open and to delete a file for each of some hundred takes longer than to write what is in them.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ import tempfile
 import weakref
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -42,12 +44,20 @@ class _Mapping(mmap.mmap):
     """Tells our read-only maps, whose pages can be dropped at any time, from those of others, whose may not."""
 
 
-def mapped(path: Path, dtype: np.dtype[Any]) -> NDArray[Any]:
-    """Return the `(n,)` numbers of a file, read-only; the file may be deleted meanwhile where the system allows it."""
-    if path.stat().st_size == 0:
+def mapped(path: Path, dtype: np.dtype[Any], begin: int = 0, count: int | None = None) -> NDArray[Any]:
+    """Return the `(n,)` numbers of a file, read-only; the file may be deleted meanwhile where the system allows it.
+
+    Args:
+        path: the file.
+        dtype: the type of the numbers.
+        begin: the byte of the first one, a multiple of `_PLACES`.
+        count: how many; None for all to the end.
+    """
+    size = path.stat().st_size - begin if count is None else count * dtype.itemsize
+    if size == 0:
         return np.empty(0, dtype)
     with path.open("rb") as file:
-        return np.frombuffer(_Mapping(file.fileno(), 0, access=mmap.ACCESS_READ), dtype)
+        return np.frombuffer(_Mapping(file.fileno(), size, access=mmap.ACCESS_READ, offset=begin), dtype)
 
 
 def on_disk(values: NDArray[Any]) -> bool:
@@ -77,7 +87,7 @@ _TOO_MANY = (errno.EMFILE, errno.ENFILE)
 
 
 class Folder:
-    """Files of raw numbers, each written front to back.
+    """Files of raw numbers.
 
     It is removed with this object, or at the interpreter's end. An array that is still mapped keeps its numbers.
 
@@ -104,14 +114,28 @@ class Folder:
             for array in arrays:
                 file.write(array.data)
 
-    def array(self, name: str, dtype: np.dtype[Any]) -> NDArray[Any]:
-        """Return the numbers of a file, `(n,)`, read-only; see `release`.
+    def put(self, name: str, arrays: Iterable[tuple[int, NDArray[Any]]]) -> None:
+        """Write `(n,)` arrays into a file, each from a byte on; what lies between them is not defined.
+
+        Raises:
+            SimulationError: the disk is full, or the folder cannot be written to.
+        """
+        with _naming_folder(self.path):
+            path = self.path / name
+            path.touch()
+            with path.open("r+b") as file:
+                for begin, array in arrays:
+                    file.seek(begin)
+                    file.write(array.data)
+
+    def array(self, name: str, dtype: np.dtype[Any], begin: int = 0, count: int | None = None) -> NDArray[Any]:
+        """Return numbers of a file, `(n,)`, read-only; see `release`, and `mapped`.
 
         Raises:
             SimulationError: the file cannot be read.
         """
         with _naming_folder(self.path):
-            return mapped(self.path / name, dtype)
+            return mapped(self.path / name, dtype, begin, count)
 
     def remove(self, name: str) -> None:
         """Delete a file, if it is there; where an open file cannot be deleted, it goes with the folder."""
@@ -163,6 +187,19 @@ WRITTEN: Final = 1 << 24
 _OF_A_COLUMN: Final = 1 << 18
 """The same of a column, where there are so many that each would be opened for little."""
 
+_PLACES: Final = mmap.ALLOCATIONGRANULARITY
+"""Bytes of which the beginning of a mapping is a multiple."""
+
+_SHORT: Final = 1 << 23
+"""Bytes of a column from which on it has a file of its own."""
+
+_MORE: Final = 16
+"""The same, as a multiple of what it has when it is first written: of a column that may be longer, but will not, much
+of the place would stay empty, which not every system leaves out of a file.
+"""
+
+_SHARED: Final = "columns"
+
 _RESERVED: Final = 1.5
 """Memory reserved for columns that are to be written, as a multiple of what is gathered before that."""
 
@@ -172,24 +209,42 @@ _LARGE: Final = 1 << 22
 """Bytes of an array from which on NumPy asks the system for large pages: many small ones take ten times as long."""
 
 
-class Columns(Mapping[str, Array]):
-    """Columns in files, by name. Each is mapped anew whenever it is asked for, so that none stays in memory.
+@dataclass(slots=True)
+class _Place:
+    """Where a column lies.
 
-    `rows` are the numbers of each, from the first on, that count; None for all.
+    Attributes:
+        file: its name.
+        dtype: of its numbers.
+        begin: the byte of its first number.
+        most: numbers that it may have there; None for any.
+        rows: numbers that are there.
     """
 
-    def __init__(self, folder: Folder, files: Mapping[str, tuple[str, np.dtype[Any]]], rows: int | None = None) -> None:
-        self._folder, self._files, self._rows = folder, files, rows
+    file: str
+    dtype: np.dtype[Any]
+    begin: int = 0
+    most: int | None = None
+    rows: int = 0
+
+
+class Columns(Mapping[str, Array]):
+    """Columns in files, by name. Each is mapped anew whenever it is asked for, so that none stays in memory."""
+
+    def __init__(self, folder: Folder, places: Mapping[str, _Place]) -> None:
+        self._folder, self._places = folder, places
 
     def __getitem__(self, name: str) -> Array:
-        file, dtype = self._files[name]
-        return self._folder.array(file, dtype)[: self._rows]
+        place = self._places[name]
+        if not place.rows:
+            return np.empty(0, place.dtype)
+        return self._folder.array(place.file, place.dtype, place.begin, place.rows)
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._files)
+        return iter(self._places)
 
     def __len__(self) -> int:
-        return len(self._files)
+        return len(self._places)
 
 
 def _address(array: Array) -> int:
@@ -221,6 +276,7 @@ class ColumnStore:
         self._in_memory = IN_MEMORY if in_memory is None else in_memory
         self._types, self._filled = dict(types), filled
         self._files = {key: f"{number}.column" for number, key in enumerate(types)}
+        self._places = {key: _Place(self._files[key], dtype) for key, dtype in types.items()}
         self._expected = expected or {}
         self._together = sum(types[key].itemsize * rows for key, rows in self._expected.items())
         self._arrays = {key: np.empty(0, dtype) for key, dtype in types.items()}
@@ -300,13 +356,48 @@ class ColumnStore:
 
     def _write(self) -> None:
         before, self._folder = self._folder, self._folder or Folder()
-        for key, file in self._files.items():
-            checkpoint()
-            self._folder.append(file, [self._added(key)])
+        if before is None:
+            self._share()
+        waiting = [key for key, size in self._sizes.items() if size]
+        for key in waiting:
+            self._leave_if_full(key, self._folder)
+        shared = [key for key in waiting if self._places[key].file == _SHARED]
+        if shared:
+            self._folder.put(_SHARED, map(self._placed, shared))
+        for key in waiting:
+            place, added = self._places[key], self._added(key)
+            if place.file != _SHARED:
+                checkpoint()
+                self._folder.append(place.file, [added])
+            place.rows += added.size
             self._sizes[key] = 0
-            if before is None:  # these may be somebody's columns
-                self._arrays[key] = np.empty(0, self._types[key])
+        if before is None:  # these may be somebody's columns
+            self._arrays = {key: np.empty(0, dtype) for key, dtype in self._types.items()}
         self._bytes = 0
+
+    def _share(self) -> None:
+        """Give those columns that will be short places in one file."""
+        end = 0
+        for key, size in self._sizes.items():
+            most, place = self._expected.get(key, 0), self._places[key]
+            if most * place.dtype.itemsize <= _SHORT and size <= most <= _MORE * size:
+                place.file, place.begin, place.most = _SHARED, end, most
+                end += -(-most * place.dtype.itemsize // _PLACES) * _PLACES
+
+    def _placed(self, key: Hashable) -> tuple[int, Array]:
+        """Return what waits of a column, after the byte of the shared file where it belongs."""
+        checkpoint()
+        place = self._places[key]
+        return place.begin + place.rows * place.dtype.itemsize, self._added(key)
+
+    def _leave_if_full(self, key: Hashable, folder: Folder) -> None:
+        """Move a column that gets longer than was expected into a file of its own."""
+        place = self._places[key]
+        if place.most is None or place.rows + self._sizes[key] <= place.most:
+            return
+        if place.rows:
+            folder.append(self._files[key], [folder.array(place.file, place.dtype, place.begin, place.rows)])
+        self._places[key] = _Place(self._files[key], place.dtype, rows=place.rows)
 
     def columns(self, keys: Mapping[str, Hashable], rows: int | None = None) -> Mapping[str, Array]:
         """Return the columns so far, each under a name of its own, or their first `rows`; in memory if none was written
@@ -318,7 +409,10 @@ class ColumnStore:
         if self._folder is None:
             return {name: self._compact(key)[:rows] for name, key in keys.items()}
         self._write()
-        return Columns(self._folder, {name: (self._files[key], self._types[key]) for name, key in keys.items()}, rows)
+        found = {name: replace(self._places[key]) for name, key in keys.items()}
+        for place in found.values():
+            place.rows = place.rows if rows is None else min(place.rows, rows)
+        return Columns(self._folder, found)
 
     def _compact(self, key: Hashable) -> Array:
         """Copy a column into no more than twice the memory that it needs."""

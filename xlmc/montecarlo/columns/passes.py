@@ -8,6 +8,7 @@ written. Values equal to a splitter are only counted, so that ties cannot make a
 
 from __future__ import annotations
 
+import mmap
 from collections.abc import Callable, Iterator
 from typing import Any
 
@@ -22,6 +23,10 @@ PART = 65_536
 """Values looked at together: a few arrays of so many fit in the processor's cache."""
 
 _PICKED = 512
+"""Values picked before the pages that they lie on are given back: each may be on a page of its own."""
+
+_PICKED_FROM = _PICKED * mmap.PAGESIZE
+"""Bytes of a column that has no more pages than that."""
 
 
 def parts(values: NDArray[Any], size: int = PART) -> Iterator[NDArray[Any]]:
@@ -53,6 +58,10 @@ def picked(values: NDArray[Any], indices: NDArray[np.intp]) -> NDArray[Any]:
     """Return the values at `(m,)` indices, in memory of their own."""
     if not on_disk(values):
         return np.asarray(values[indices])
+    if values.nbytes <= _PICKED_FROM:
+        found = np.asarray(values[indices])
+        release(values)
+        return found
     found = np.empty(indices.size, values.dtype)
     for start in range(0, indices.size, _PICKED):
         here = slice(start, start + _PICKED)

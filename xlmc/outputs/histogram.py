@@ -34,7 +34,15 @@ from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics.number_text import count_text, number_text
 from xlmc.montecarlo.statistics.sample import Sample, Values
-from xlmc.outputs.summary import SummaryRow, answer_text, central_text, percent, share_text, summarise
+from xlmc.outputs.summary import (
+    SummaryRow,
+    answer_text,
+    central_text,
+    frequent_texts,
+    percent,
+    share_text,
+    summarise,
+)
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -175,7 +183,8 @@ def histogram(values: Values, low: float, high: float, form: Form = PLAIN) -> Hi
 def bars_of(row: SummaryRow, sample: Sample) -> Histogram | None:
     """Return the bars of a forecast: one for each text, for no and yes, for each whole number; bins of the others."""
     if row.categories:
-        return _named_bars(sample, row.numbers, [*row.categories], row.form)
+        told = [*frequent_texts(row.categories)[0]]
+        return _named_bars(sample, row.numbers[: len(told)], told, row.form)
     if row.yes is not None and sample.yes_no:
         return _named_bars(sample, [0.0, 1.0], ["no", "yes"], row.form)
     low, high = row.low.value, row.high.value

@@ -25,12 +25,28 @@ class Findings:
 
     problems: list[DefinitionError] = field(default_factory=list)
     notices: list[Notice] = field(default_factory=list)
+    _alike: dict[str, tuple[int, Notice, int]] = field(default_factory=dict)
 
     def problem(self, message: str, where: object, hint: str) -> None:
         self.problems.append(DefinitionError(message, where=where, hint=hint))
 
-    def notice(self, message: str, where: object) -> None:
+    def notice(self, message: str, where: object, *, alike: str = "") -> None:
+        """Add a notice.
+
+        Args:
+            message: what it says.
+            where: the cell it is about.
+            alike: what may be so of many cells, as "text in Cell": the first is told, and how many more there are.
+        """
+        if alike in self._alike:
+            place, first, more = self._alike[alike]
+            self._alike[alike] = place, first, more + 1
+            cells = "1 more cell" if more == 0 else f"{more + 1} more cells"
+            self.notices[place] = Notice(f"{first.message} (so in {cells} of this column)", first.where)
+            return
         self.notices.append(Notice(message, where))
+        if alike:
+            self._alike[alike] = len(self.notices) - 1, self.notices[-1], 0
 
     def add(self, others: Findings) -> None:
         """Take what was found elsewhere."""

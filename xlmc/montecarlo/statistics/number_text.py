@@ -108,10 +108,13 @@ def number_text(value: float, digits: int = _DIGITS) -> str:
 
     >>> number_text(2234567.89), number_text(0.1 + 0.2), number_text(1e-9), number_text(2.5e15)
     ('2,234,568', '0.3', '1e-09', '2.5e+15')
+    >>> number_text(99.71, 3), number_text(99.96, 3), number_text(0.9996, 3)
+    ('99.7', '100', '1')
     """
     if value == 0.0 or not math.isfinite(value) or is_far(value):
         return _styled(f"{value + 0.0:.{digits}g}")
-    text = f"{value:,.{max(digits - 1 - two_digit_exponent(value), 0)}f}"
+    power = int(f"{value:.{digits - 1}e}".partition("e")[2])  # once it is rounded: 9.996 -> 10.00
+    text = f"{value:,.{max(digits - 1 - power, 0)}f}"
     return _styled(text.rstrip("0").rstrip(".") if "." in text else text)
 
 

@@ -9,7 +9,7 @@ from xlmc.analysis.studies.sensitivity.measures import noise
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Line, Lines, Shape
 from xlmc.outputs.filter_effect import shapes_of
-from xlmc.outputs.summary import shares_of
+from xlmc.outputs.summary import frequent_texts, shares_of
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.sensitivity import FilterLimit, ForecastSensitivity
@@ -64,12 +64,8 @@ def tornado_chart(found: ForecastSensitivity, most: int, title: str) -> Chart:
 def shares_chart(figure: Figure) -> Chart:
     """Draw the share of each text, or of yes and no, with its error."""
     shares = shares_of(figure.answer)
-    bars = tuple(_share(text or "(empty)", share, pale=False) for text, share in [*shares.items()][:_MOST_TEXTS])
+    bars = tuple(_share(text or "(empty)", share, pale=False) for text, share in frequent_texts(shares)[0].items())
     return Chart("", "Accepted trials, %", Bars(bars), f"{figure.name}: {figure.said}", 125.0)
-
-
-_MOST_TEXTS = 40
-"""Texts that a chart has bars of."""
 
 
 def limit_chart(limit: FilterLimit, indexes: list[int], unit: str, form: Form = PLAIN) -> Chart:

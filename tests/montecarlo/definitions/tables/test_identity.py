@@ -184,3 +184,11 @@ def test_a_formula_typed_into_a_text_cell_is_text(read):
     found = read({AT: CellContent("=Model!B1")})
     assert found.forecasts[0].cell == POINTED
     assert "goes stale" in found.notices[0].message
+
+
+def test_what_is_so_of_a_whole_column_is_said_once(read):
+    found = read({AT: "Model!B1", "Answers!B11": "Model!B2", "Answers!B12": "Model!B3"})
+    forecast, filters = map(str, found.notices)
+    assert forecast.endswith("the formula =Model!B1 follows")
+    assert filters.startswith("Answers!B11: Cell is the text 'Model!B2', which goes stale")
+    assert filters.endswith("the formula =Model!B2 follows (so in 1 more cell of this column)")

@@ -175,5 +175,5 @@ def _reference(row: Row, where: Cell, findings: Findings) -> str:
         message = (
             f"Data is the text {text!r}, which goes stale when rows move; a defined name or a table column follows"
         )
-        findings.notice(message, where)
+        findings.notice(message, where, alike="text in Data")
     return text

@@ -135,7 +135,7 @@ def cell_pointed_to(row: Row, heading: str, findings: Findings) -> Cell:
     message = (
         f"{heading} is the text {text!r}, which goes stale when rows move or names change; the formula ={cell} follows"
     )
-    findings.notice(message, where)
+    findings.notice(message, where, alike=f"text in {heading} of {row.table.table.name}")
     return cell
 
 

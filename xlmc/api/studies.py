@@ -184,8 +184,8 @@ def optimise(model: Model, **options: Unpack[OptimiseArguments]) -> Optimised:
 
     Args:
         model: of a workbook with a table `xlmc_decisions`; it stays as it is.
-        options: `maximise` or `minimise`, `subject_to`, `decisions`, `indifference`, `runs`, `trials`, `seed`,
-            `engine`, `jobs` and `tell`, which `xlmc.analysis.studies.optimising.optimise.optimise` describes.
+        options: `maximise` or `minimise`, `subject_to`, `decisions`, `indifference`, `allow_lost`, `runs`, `trials`,
+            `seed`, `engine`, `jobs` and `tell`, which `xlmc.analysis.studies.optimising.optimise.optimise` describes.
 
     Raises:
         DefinitionError: the workbook has no decisions.

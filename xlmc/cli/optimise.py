@@ -42,6 +42,14 @@ _KINDS = f"{STUDY}, the accepted trials of the best decisions' run (.csv, .parqu
     type=float,
     help="A difference of the goal that does not matter.  [default: 1 % of what a good choice gains]",
 )
+@click.option(
+    "--allow-lost",
+    type=float,
+    default=0.1,
+    show_default=True,
+    metavar="PERCENT",
+    help="Percent of its trials that a candidate may lose to errors in cells; one that loses more cannot be the best.",
+)
 @click.option("--runs", type=float, default=60.0, show_default=True, help="Runs whose trials the search may take.")
 @click.option("-n", "--trials", type=WholeNumber(1), help="Trials of a run.  [default: the book's, else 200000]")
 @click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
@@ -57,6 +65,7 @@ def optimise(
     subject_to: tuple[str, ...],
     decision: tuple[str, ...],
     indifference: float | None,
+    allow_lost: float,
     runs: float,
     trials: int | None,
     seed: int | None,
@@ -92,6 +101,7 @@ def optimise(
             subject_to=subject_to,
             decisions=decision,
             indifference=indifference,
+            allow_lost=allow_lost,
             runs=runs,
             trials=trials,
             seed=seed,
@@ -99,24 +109,37 @@ def optimise(
             jobs=jobs,
             tell=tell,
         )
-    report = optimise_report(found, _again(book, decision, indifference, runs, found))
+    report = optimise_report(found, _again(book, decision, indifference, allow_lost, runs, found))
     written = give_out(report, files.writers(report), as_json, [f"{report.below}.", *report.blocks])
     conclude(written, found.run, _doubts(found))
 
 
-def _again(book: Path, decision: tuple[str, ...], indifference: float | None, runs: float, found: Optimised) -> str:
+def _again(
+    book: Path,
+    decision: tuple[str, ...],
+    indifference: float | None,
+    allow_lost: float,
+    runs: float,
+    found: Optimised,
+) -> str:
     """Return the command that gives the same again."""
     goal = found.goal
     parts = ["xlmc", "optimise", book.name, "--maximise" if goal.maximise else "--minimise", goal.measure.text]
     parts += [part for each in found.held for part in ("--subject-to", each.requirement.text)]
     parts += [part for name in decision for part in ("--decision", name)]
-    parts += [] if indifference is None else ["--indifference", f"{indifference:g}"]
-    parts += [] if runs == 60.0 else ["--runs", f"{runs:g}"]
+    parts += [] if indifference is None else ["--indifference", repr(indifference)]
+    parts += [] if allow_lost == 0.1 else ["--allow-lost", repr(allow_lost)]
+    parts += [] if runs == 60.0 else ["--runs", repr(runs)]
     settings = found.run.settings
     return shlex.join([*parts, "-n", str(found.run.trials), "--seed", str(settings.seed), "--engine", settings.engine])
 
 
 def _doubts(found: Optimised) -> list[str]:
     """Return why the answer must not be used."""
+    from xlmc.outputs.studies.optimise import lost_sentences
+
     missed = [each.requirement.text for each in found.held if each.chance <= 0.5]
-    return [f"No candidate that was found meets what is required: {text} fails" for text in missed]
+    doubts = [f"No candidate that was found meets what is required: {text} fails" for text in missed]
+    if not found.is_whole or any(each.looks_better for each in found.excluded):
+        doubts += [each.rstrip(".") for each in lost_sentences(found)]
+    return doubts

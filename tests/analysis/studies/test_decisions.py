@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 
 import numpy as np
 import pytest
@@ -65,6 +66,31 @@ def test_means_and_differences_are_those_of_the_closed_form(book):
         assert change.error < alone  # paired
     same = next(each for each in found.combinations if each.values == (50, 5))
     assert same.answers.forecasts[0].differences["mean"].value == 0.0
+
+
+def test_a_combination_that_loses_trials_to_errors_is_not_called_the_best(book):
+    """An order of x loses x % of the trials; by those that are left its profit is 2·x."""
+    path = book(
+        ["Order", "=Inputs!B5", None, None, None, "-10; 0; 50", None],
+        formula="=2*Inputs!B5+0*SQRT(Inputs!B2-Inputs!B5)",
+    )
+    found = xlmc.decide(xlmc.load(path), trials=2_000)
+    best = found.best("Profit")
+    assert best.combination.values == (0,)
+    assert best.next.values == (-10,)
+    (losing,) = found.losing("Profit")
+    assert losing.answers.run.lost_share("Profit") == pytest.approx(0.5, abs=0.05)
+    assert re.search(r"Left out of the largest and smallest of Profit.*: Order = 50 \((49|5\d) %\)\.", str(found))
+
+
+def test_where_all_combinations_lose_trials_none_is_the_best(book):
+    path = book(
+        ["Order", "=Inputs!B5", None, None, None, "20; 50", None], formula="=2*Inputs!B5+0*SQRT(Inputs!B2-Inputs!B5)"
+    )
+    found = xlmc.decide(xlmc.load(path), trials=2_000)
+    assert found.best("Profit") is None
+    assert "The mean of Profit is" not in str(found)
+    assert "Left out" in str(found)
 
 
 def test_the_best_order_is_found_and_how_sure_that_is(book):

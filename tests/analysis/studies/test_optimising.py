@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 import signal
 import sys
 from itertools import product
@@ -26,7 +27,7 @@ PRICE = ["Price", "=Inputs!B7", None, None, None, "5; 6"]
 def book(tmp_path):
     """A newsvendor: demand uniform from 0 to 100, a cost of 3 and a price of 5; its colour is what sells."""
 
-    def make(*rows, demand=(0, 100), filters=()):
+    def make(*rows, demand=(0, 100), filters=(), free=None, profit="=Inputs!B7*MIN(Inputs!B6,Inputs!B2)-3*Inputs!B6"):
         rows = rows or (ORDER,)
         sheets = {
             "Inputs": [
@@ -40,11 +41,12 @@ def book(tmp_path):
             ],
             "Model": [
                 ["Name", "Value", "Threshold", "Units"],
-                ["Profit", "=Inputs!B7*MIN(Inputs!B6,Inputs!B2)-3*Inputs!B6", 0, "$"],
+                ["Profit", profit, 0, "$"],
                 ["Sold out", "=Inputs!B2>=Inputs!B6", None, None],
                 ["Verdict", '=IF(B2>0,"good","bad")', None, None],
             ],
             "Decisions": [HEADS, *rows],
+            "Free": [[free]],
             "Filters": [["Name", "Cell", "At least"], *filters],
         }
         tables = {
@@ -129,6 +131,66 @@ def test_filters_that_leave_few_trials_need_more_of_them(book):
     assert not found.rivals
 
 
+LOSING = "=2*Inputs!B6+0*SQRT(Inputs!B2-Inputs!B6)"
+"""Profit of a firm that fails where less is asked for than it ordered; the formula then is an error."""
+
+
+@pytest.mark.parametrize("engine", ["numpy", "jit"])
+def test_a_candidate_that_loses_trials_to_errors_cannot_be_the_best(book, engine):
+    """An order of x loses x % of the trials; by those that are left the largest order is the best."""
+    model = xlmc.load(book(["Order", "=Inputs!B6", 0, 100, 10, None], profit=LOSING))
+    found = model.optimise(maximise="mean of Profit", trials=5_000, engine=engine)
+    assert found.values == {"Order": 0}
+    assert found.lost == 0
+    assert found.meets
+    assert found.lost_as_it_is == pytest.approx(0.5, abs=0.03)
+    shares = {each.candidate[0]: each.lost for each in found.excluded}
+    assert [*sorted(shares)] == [*range(10, 101, 10)]
+    assert all(shares[order] == pytest.approx(order / 100, abs=0.15) for order in shares)
+    looking = {each.candidate[0] for each in found.excluded if each.looks_better}
+    assert {50, 60, 70} <= looking
+    assert not any(each.meets for each in found.rivals)
+    text = str(found)
+    assert "10 candidates lose more than 0.1 % of the trials to errors in cells, and cannot be the best" in text
+    assert "would be better" in text
+
+
+def test_trials_that_may_be_lost_are_allowed(book):
+    """Of whole orders, those up to 30 % are allowed; that is stated of the best, which loses so many."""
+    model = xlmc.load(book(["Order", "=Inputs!B6", 0, 100, 10, None], profit=LOSING))
+    found = model.optimise(maximise="mean of Profit", trials=20_000, allow_lost=33)
+    assert found.values == {"Order": 30}
+    assert found.lost == pytest.approx(0.3, abs=0.015)
+    assert found.meets
+    with pytest.raises(SimulationError, match="101 % of the trials cannot be lost"):
+        model.optimise(maximise="mean of Profit", trials=100, allow_lost=101)
+
+
+def test_where_all_candidates_lose_trials_none_is_sound(book):
+    model = xlmc.load(book(["Order", "=Inputs!B6", 20, 100, 10, None], profit=LOSING))
+    found = model.optimise(maximise="mean of Profit", trials=5_000)
+    assert found.values == {"Order": 20}  # it loses the least
+    assert not found.is_whole
+    assert not found.meets
+    assert re.search(r"Errors in cells take (19|20|21) % of the trials of these decisions, and 0.1 %", str(found))
+
+
+def test_errors_in_filters_count_and_rejected_trials_do_not(book):
+    """An order of 60 has a filter that is an error where demand is less; a filter that is FALSE loses nothing."""
+    rows = (["Order", "=Inputs!B6", None, None, None, "40; 60"],)
+    profit, limits = "=2*Inputs!B6", [["Free", "=Free!A1", 0]]
+    undecided = "=IF(Inputs!B6>50,SQRT(Inputs!B2-Inputs!B6),1)"
+    path = book(*rows, filters=limits, free=undecided, profit=profit)
+    found = xlmc.load(path).optimise(maximise="mean of Profit", trials=5_000)
+    assert found.values == {"Order": 40}
+    (excluded,) = found.excluded
+    assert excluded.lost == pytest.approx(0.6, abs=0.15)
+    path = book(*rows, filters=limits, free="=Inputs!B2-Inputs!B6", profit=profit)
+    found = xlmc.load(path).optimise(maximise="mean of Profit", trials=5_000)
+    assert found.values == {"Order": 60}
+    assert not found.excluded
+
+
 def test_the_smallest_is_found_too(book):
     found = xlmc.load(book()).optimise(
         minimise="SD of Profit", subject_to=["mean of Profit >= 30"], trials=40_000, seed=2
@@ -152,9 +214,9 @@ def test_candidates_as_inputs_give_what_typing_them_gives(book):
     compiled = model._compiled
     trials = CandidateTrials(compiled, compiled.definitions.decisions, "numpy", 5, [(0, None), (2, "good")])
     assert not trials.by_typing
-    (held,) = trials.forecasts([(30.0, 6.0)], 0, 4_000)
+    held = trials.forecasts([(30.0, 6.0)], 0, 4_000)[0].columns
     trials.by_typing = True
-    (typed,) = trials.forecasts([(30.0, 6.0)], 0, 4_000)
+    typed = trials.forecasts([(30.0, 6.0)], 0, 4_000)[0].columns
     assert np.array_equal(held, typed, equal_nan=True)
     assert 0 < np.isnan(held[0]).mean() < 0.5
     assert set(np.unique(held[1][~np.isnan(held[1])])) == {0.0, 1.0}
@@ -184,7 +246,7 @@ def test_goals_are_read_and_measured(book, text, value):
     reader = Reader(model, model.definitions.decisions)
     goal = reader.goal(text, maximise=True)
     trials = CandidateTrials(model, model.definitions.decisions, "numpy", 1, [(0, None), *reader.columns])
-    profit, *rest = trials.forecasts([(70.0,)], 0, 5_000)[0]
+    profit, *rest = trials.forecasts([(70.0,)], 0, 5_000)[0].columns
     measured = goal.measure.of(np.array(rest), (70.0,))
     expected = value(profit)
     if math.isnan(expected):
@@ -202,7 +264,7 @@ def test_errors_are_what_other_seeds_show(book):
         reader = Reader(model, decisions)
         goals = [reader.goal(text, maximise=True) for text in texts]
         trials = CandidateTrials(model, decisions, "numpy", seed, reader.columns)
-        first, second = trials.forecasts([(60.0,), (70.0,)], 0, 2_000)
+        first, second = (each.columns for each in trials.forecasts([(60.0,), (70.0,)], 0, 2_000))
         for goal, text in zip(goals, texts, strict=True):
             found[text].append(apart(goal.measure.of(first, (60.0,)), goal.measure.of(second, (70.0,))))
     for text, pairs in found.items():

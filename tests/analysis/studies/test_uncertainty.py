@@ -231,3 +231,13 @@ def test_draws_that_filters_keep_differently_say_as_much_as_fewer():
     )
     found = xlmc.uncertainty(model, uncertain=["m"], outer=400, inner=200)
     assert found["y"].effective == pytest.approx(300, rel=0.02)
+
+
+def test_trials_that_errors_take_are_told():
+    """The root is no number in half of the trials of a mean around 0."""
+    model = xlmc.model(
+        lambda mean, z: {"y": np.sqrt(mean + z)}, {"mean": xlmc.Uniform(-1, 1), "z": xlmc.Uniform(-2, 2)}, ["y"]
+    )
+    assert "Errors in cells take up to 50 % of the trials: what is said of y concerns those" in str(
+        xlmc.uncertainty(model, uncertain=["mean"], outer=100, inner=2_000)
+    )

@@ -120,9 +120,18 @@ class Decided(Shown):
         found = {_numbers(of_forecast(each, forecast)) for each in states}
         return len(found) > 1
 
+    def losing(self, forecast: str) -> list[Combination]:
+        """Return the combinations with which errors take so many trials from a forecast that its mean says little."""
+        return [each for each in self.combinations if each.answers.run.loses_too_many(forecast)]
+
     def best(self, forecast: str, *, least: bool = False) -> Best | None:
-        """Return the combination with the largest mean of a forecast, or the least; None if none has a number."""
-        known = [(each, _mean(each, forecast)) for each in self.combinations]
+        """Return the combination with the largest mean of a forecast, or the least; None if none has a number.
+
+        Those that lose too many trials to errors are not asked (`losing`).
+        """
+        known = [
+            (each, _mean(each, forecast)) for each in self.combinations if not each.answers.run.loses_too_many(forecast)
+        ]
         known = [(each, mean) for each, mean in known if not math.isnan(mean.value)]
         ordered = sorted(known, key=lambda pair: pair[1].value, reverse=not least)
         if not ordered:

@@ -31,7 +31,7 @@ from xlmc.montecarlo.model.loading import model_with_values
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.draws import Draw
 
-__all__ = ["CandidateTrials", "Column", "Values"]
+__all__ = ["CandidateTrials", "Column", "Computed", "Values"]
 
 Floats = NDArray[np.float64]
 
@@ -49,6 +49,20 @@ _ALIKE: Final = 1e-9
 
 _MOST_BYTES: Final = 1 << 26
 """Bytes of draws that are kept for the next candidates, for each size of blocks and each thread."""
+
+
+@dataclass(slots=True)
+class Computed:
+    """Trials of one candidate.
+
+    Attributes:
+        columns: `(columns, n)`; NaN where a trial is not accepted, or has no number; throughout, where the candidate is
+            not possible.
+        lost: trials lost to errors: in a draw, in a filter that cannot decide, in a column that is wanted.
+    """
+
+    columns: Floats
+    lost: int = 0
 
 
 class CandidateTrials:
@@ -84,12 +98,9 @@ class CandidateTrials:
         self._held = self._with_inputs()
         self.by_typing = self._held is None
 
-    def forecasts(self, candidates: Sequence[Values], start: int, stop: int) -> list[Floats]:
-        """Return the columns of each candidate in the trials from `start` to `stop`, `(columns, stop - start)`.
-
-        NaN where a trial is not accepted, or has no number; throughout, where the candidate is not possible.
-        """
-        found = [np.full((len(self._wanted), stop - start), np.nan) for _ in candidates]
+    def forecasts(self, candidates: Sequence[Values], start: int, stop: int) -> list[Computed]:
+        """Return the trials of each candidate from `start` to `stop`."""
+        found = [Computed(np.full((len(self._wanted), stop - start), np.nan)) for _ in candidates]
         workers = max(1, min(self._jobs, len(candidates)))
         shares = [range(number, len(candidates), workers) for number in range(workers)]
 
@@ -108,7 +119,7 @@ class CandidateTrials:
         self,
         candidates: Sequence[Values],
         mine: Sequence[int],
-        found: Sequence[Floats],
+        found: Sequence[Computed],
         start: int,
         stop: int,
         worker: int,
@@ -121,7 +132,9 @@ class CandidateTrials:
             for number in mine:
                 runner = self._runner(candidates[number], size, worker)
                 if runner is not None:
-                    found[number][:, at] = self._columns(runner, Task(first, count, prior=False, inputs=False))
+                    rows, lost = self._columns(runner, Task(first, count, prior=False, inputs=False))
+                    found[number].columns[:, at] = rows
+                    found[number].lost += lost
 
     def _block_size(self, start: int, stop: int) -> int:
         """Return a power of two of trials: what is asked for begins at a multiple of it, as long as it is one."""
@@ -130,7 +143,8 @@ class CandidateTrials:
             size //= 2
         return size
 
-    def _columns(self, runner: ModelRunner, task: Task) -> Floats:
+    def _columns(self, runner: ModelRunner, task: Task) -> tuple[Floats, int]:
+        """Return the columns of a block, and how many of its trials are lost to errors."""
         block = runner.borrow(task)
         rows = np.full((len(self._wanted), task.trials), np.nan)
         for row, (number, text) in zip(rows, self._wanted, strict=True):
@@ -140,7 +154,8 @@ class CandidateTrials:
                 at = texts.index(text) if text in texts else -1
                 values = np.where(np.isnan(values), np.nan, (values == at).astype(np.float64))
             row[block.accepted - task.start] = values
-        return rows
+        without = sum(block.faults[number].total() for number in {number for number, _ in self._wanted})
+        return rows, min(block.lost, block.tally.by_error + block.invalid.total() + without)
 
     def _runner(self, candidate: Values, size: int, worker: int) -> ModelRunner | None:
         """Return what runs a candidate; None where it is not possible."""
@@ -189,7 +204,7 @@ class CandidateTrials:
             (held,) = self.forecasts([candidate], 0, _CHECKED)
             self.by_typing = True
             (typed,) = self.forecasts([candidate], 0, _CHECKED)
-            if not np.allclose(held, typed, rtol=_ALIKE, atol=0.0, equal_nan=True):
+            if not np.allclose(held.columns, typed.columns, rtol=_ALIKE, atol=0.0, equal_nan=True):
                 return None
         self.computed = 0
         return found

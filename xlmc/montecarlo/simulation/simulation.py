@@ -336,6 +336,17 @@ class RunResult:
             return f". {list_of(names)} {rejects} all trials by {itself}"
         return ". No filter rejects all trials by itself"
 
+    def lost_share(self, forecast: str) -> float:
+        """Return the share of the trials that errors take from a forecast: in a draw, in a filter that cannot decide,
+        in its own cell.
+        """
+        lost = self.tally.by_error + self.invalid.total() + self.faults[forecast].total()
+        return min(self.error_trials, lost) / self.trials
+
+    def loses_too_many(self, forecast: str) -> bool:
+        """Whether errors take so many trials from a forecast that its answer must not be used as it is."""
+        return self.lost_share(forecast) > ERROR_SHARE
+
     @property
     def refused(self) -> list[str]:
         """The warnings that concern only a forecast without an answer: the answers of others may be used."""

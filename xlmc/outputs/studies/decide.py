@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from xlmc.analysis.studies.decisions import Decided
+    from xlmc.analysis.studies.decisions import Combination, Decided
     from xlmc.outputs.document.parts import Block, Figure, Table
     from xlmc.outputs.study_report import StudyReport
 
@@ -15,6 +15,7 @@ __all__ = ["decide_report"]
 
 
 _MOST_LINES = 6
+_MOST_NAMED = 4
 
 
 def decide_report(found: Decided) -> StudyReport:
@@ -49,10 +50,12 @@ def _sentences(found: Decided) -> Iterator[str]:
     for forecast in found.run.model.forecasts:
         if forecast.name in same:
             continue
+        losing = found.losing(forecast.name)
         for least, word in ((False, "largest"), (True, "smallest")):
             best = found.best(forecast.name, least=least)
             if best is None:
-                yield f"{forecast.name} is a number with none of them."
+                if not losing:
+                    yield f"{forecast.name} is a number with none of them."
                 break
             answer = of_forecast(found.base, forecast.name)
             share = "probability" if answer.text is None else f"share of “{answer.text}”"
@@ -70,9 +73,28 @@ def _sentences(found: Decided) -> Iterator[str]:
             ahead = form.spread(best.ahead).lstrip("-")
             doubt = "" if best.is_sure else ", and these trials cannot tell the two apart"
             yield f"{text}; that is {ahead} {side} the next, {best.next.answers.name}{doubt}."
+        if losing:
+            yield _losing_text(losing, forecast.name)
     if same:
         are = "are" if len(found.decisions) > 1 else "is"
         yield f"Whatever {names} {are}, these stay as they are: {'; '.join(same)}."
+
+
+def _losing_text(losing: Sequence[Combination], forecast: str) -> str:
+    from xlmc.montecarlo.simulation.simulation import ERROR_SHARE
+    from xlmc.montecarlo.statistics.number_text import number_text
+
+    def percent(share: float) -> str:
+        return f"{number_text(100.0 * share, 2)} %"
+
+    named = "; ".join(
+        f"{each.answers.name} ({percent(each.answers.run.lost_share(forecast))})" for each in losing[:_MOST_NAMED]
+    )
+    more = f"; and {len(losing) - _MOST_NAMED} more" if len(losing) > _MOST_NAMED else ""
+    return (
+        f"Left out of the largest and smallest of {forecast}, since errors in cells take more than "
+        f"{percent(ERROR_SHARE)} of the trials: {named}{more}."
+    )
 
 
 def _blocks(found: Decided) -> Iterator[Block]:
@@ -168,4 +190,7 @@ def _best_json(found: Decided, forecast: str) -> dict[str, object]:
             "ahead": best.ahead and estimate_json(best.ahead),
             "is_sure": best.is_sure,
         }
+    told["losing_trials"] = [
+        {"values": each.values, "lost": each.answers.run.lost_share(forecast)} for each in found.losing(forecast)
+    ]
     return told

@@ -96,9 +96,47 @@ def _sentences(found: Optimised) -> Iterator[str]:
         yield f"These trials cannot tell it from {named}{more}."
     if found.as_it_is is not None:
         own = "no number" if math.isnan(found.as_it_is.value) else measure.shown(found.as_it_is)
-        yield f"With the workbook's own decisions {measure.text} is {own}."
+        lost = f", while errors take {_share(found.lost_as_it_is)} of the trials" * (
+            found.lost_as_it_is > found.allowed
+        )
+        yield f"With the workbook's own decisions {measure.text} is {own}{lost}."
+    yield from lost_sentences(found)
     if found.ended:
         yield f"The search ended early, because {found.ended}: this is the best that was found by then."
+
+
+def lost_sentences(found: Optimised) -> Iterator[str]:
+    """Yield what is to be known of trials that errors take; nothing where they take few of any candidate."""
+    from xlmc.montecarlo.statistics.number_text import count_text
+
+    most = _share(found.allowed)
+    if not found.is_whole:
+        yield (
+            f"Errors in cells take {_share(found.lost)} of the trials of these decisions, and {most} is allowed. Mend "
+            "the cells, filter such trials out, or allow them (--allow-lost)."
+        )
+    if found.excluded:
+        count = len(found.excluded)
+        yield (
+            f"{count_text(count)} candidate{'s lose' if count > 1 else ' loses'} more than {most} of the trials to "
+            "errors in cells, and cannot be the best: what the lost trials would be is not known."
+        )
+    better = [each for each in found.excluded if each.looks_better]
+    if better:
+        named = "; ".join(f"{_with_values(found, each.candidate)} (loses {_share(each.lost)})" for each in better[:4])
+        more = f"; and {count_text(len(better) - 4)} more" if len(better) > 4 else ""
+        yield f"By the trials that are left these would be better: {named}{more}."
+
+
+def _share(share: float) -> str:
+    """Write a share of trials.
+
+    >>> [_share(share) for share in (0.001, 0.25, 0.12345)]
+    ['0.1 %', '25 %', '12 %']
+    """
+    from xlmc.montecarlo.statistics.number_text import number_text
+
+    return f"{number_text(100.0 * share, 2)} %"
 
 
 def _capital(text: str) -> str:
@@ -206,6 +244,11 @@ def _as_json(found: Optimised, again: str) -> dict[str, object]:
                 "trials": each.trials,
             }
             for each in found.rivals
+        ],
+        "lost": {"share": found.lost, "as_it_is": found.lost_as_it_is, "allowed": found.allowed},
+        "excluded": [
+            {"values": list(each.candidate), "lost": each.lost, "looks_better": each.looks_better}
+            for each in found.excluded
         ],
         "tried": found.tried,
         "trials_in_all": found.trials,

@@ -143,6 +143,13 @@ def _meaning(found: TwoLoops) -> Iterator[str]:
             "draw counts by its accepted trials; "
             f"together they say as much as {fixed_text(few, 0)} draws of equal weight.{empty}"
         )
+    losing = [each.definition.name for each in found.forecasts if run.loses_too_many(each.definition.name)]
+    if losing:
+        most = max(run.lost_share(name) for name in losing)
+        yield (
+            f"Errors in cells take up to {number_text(100.0 * most, 2)} % of the trials: what is said of "
+            f"{'; '.join(losing)} concerns those that are left."
+        )
     if any(end.error is None for each in found.forecasts for band in each.bands for end in (band.low, band.high)):
         yield "An end without ± is decided by one or two outer draws: take more of them (--outer)."
     if found.wide:

@@ -260,3 +260,11 @@ def test_the_probability_of_being_above_the_threshold_is_compared(book):
     assert "y to 1 and P(> 2) to 0.1 points: P(> 2) differs by " in message
     assert "points" in message.partition("differs by")[2]
     assert compare(first, second, "1", chance=5, trials=20_000, seed=1).forecasts[0].judgement.verdict is Verdict.WITHIN
+
+
+def test_trials_that_errors_take_from_one_book_are_told(linear):
+    """The second book's answer is the first's where a is 1/2 or more, and else an error."""
+    found = compare(linear(), linear("=A1+B1+0*SQRT(A1-0.5)", name="y.xlsx"), "1", causes=False, **SIZE)
+    (sentence,) = (text for text in verdict_text(found) if "errors" in text)
+    assert sentence.startswith("In y.xlsx errors in cells take up to 5")
+    assert not any("errors" in text for text in verdict_text(compare(linear(), linear(name="y.xlsx"), "1", **SIZE)))

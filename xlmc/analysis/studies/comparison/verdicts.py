@@ -45,7 +45,22 @@ def verdict_text(comparison: Comparison) -> list[str]:
         *_rivals(comparison.rivals, books),
         *(_too_little(comparison, each, books) for each in comparison.of(Verdict.BEYOND)),
         *_undecided_text(comparison),
+        *_lost(comparison, books),
     ]
+
+
+def _lost(comparison: Comparison, books: tuple[str, str]) -> Iterator[str]:
+    """Yield which answers of a book are of some of the trials only, since errors in cells take the others."""
+    for name, run, side in zip(books, (comparison.first, comparison.second), ("first", "second"), strict=True):
+        losing = [getattr(each, side).name for each in comparison.forecasts]
+        losing = [each for each in losing if run.loses_too_many(each)]
+        if losing:
+            most = number_text(100.0 * max(map(run.lost_share, losing)), 2)
+            answers = _join_names([repr(each) for each in losing])
+            yield (
+                f"In {name} errors in cells take up to {most} % of the trials: what is said of {answers} concerns the "
+                "trials that are left."
+            )
 
 
 def _subject(comparison: Comparison, books: tuple[str, str]) -> str:

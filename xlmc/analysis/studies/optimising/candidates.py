@@ -120,21 +120,27 @@ class Standing:
     Attributes:
         goal: with its sign, so that larger is better.
         slacks: how far each requirement holds.
+        lost: the share of the trials that errors take.
+        excess: by how much that is clearly more than is allowed; else 0.
     """
 
     candidate: Values
     n: int
     goal: Measured
     slacks: tuple[Measured, ...]
+    lost: float = 0.0
+    excess: float = 0.0
 
     @property
     def sureness(self) -> float:
-        """By how many errors the requirement holds that holds the least."""
-        return min((_errors(each) for each in self.slacks), default=math.inf)
+        """By how many errors the requirement holds that holds the least; minus infinity where too many trials are
+        lost, since what the lost ones would have been is not known.
+        """
+        return -math.inf if self.excess else min((_errors(each) for each in self.slacks), default=math.inf)
 
     @property
     def meets(self) -> bool:
-        """Whether all requirements hold with a margin, and the goal is a number."""
+        """Whether all requirements hold with a margin, the goal is a number, and errors take few enough trials."""
         return self.sureness >= MARGIN and not math.isnan(self.goal.value)
 
     @property
@@ -147,7 +153,7 @@ class Standing:
     @property
     def missing(self) -> float:
         """By how much the requirements are missed, as a share of what is asked for; added up."""
-        return math.fsum(_missing(each) for each in self.slacks)
+        return math.fsum((*(_missing(each) for each in self.slacks), 1e9 * self.excess))
 
 
 def _errors(slack: Measured) -> float:
@@ -172,6 +178,7 @@ class Tried:
         requirements: of statistics, and of decisions.
         most: trials that may be spent.
         interrupted: whether somebody asked to stop.
+        allowed: the share of the trials that a candidate may lose to errors.
     """
 
     trials: CandidateTrials
@@ -179,7 +186,9 @@ class Tried:
     requirements: tuple[Requirement, ...]
     most: float
     interrupted: Callable[[], bool]
+    allowed: float
     columns: dict[Values, Floats] = field(default_factory=dict)
+    _lost: dict[Values, dict[int, int]] = field(default_factory=dict)
     _known: dict[tuple[Values, int], Standing] = field(default_factory=dict)
 
     def extend(self, candidates: Sequence[Values], n: int) -> None:
@@ -195,8 +204,11 @@ class Tried:
                 self._check()
                 some = group[at : at + 64]
                 for candidate, more in zip(some, self.trials.forecasts(some, have, n), strict=True):
-                    known = self.columns.get(candidate)
-                    self.columns[candidate] = more if known is None else np.concatenate([known, more], axis=1)
+                    known, lost = self.columns.get(candidate), self._lost.setdefault(candidate, {0: 0})
+                    self.columns[candidate] = (
+                        more.columns if known is None else np.concatenate([known, more.columns], axis=1)
+                    )
+                    lost[n] = lost[have] + more.lost
 
     def _check(self) -> None:
         if self.interrupted() or self.trials.computed >= self.most:
@@ -216,8 +228,18 @@ class Tried:
             goal = self.goal.measure.of(columns, candidate)
             slacks = tuple(each.slack.of(columns, candidate) for each in self.requirements)
             signed = Measured(self.goal.sign * goal.value, _times(self.goal.sign, goal), goal.least)
-            self._known[key] = Standing(candidate, n, signed, slacks)
+            lost, of = self._lost_of(candidate, n)
+            usual = self.allowed * of
+            clearly = lost > 1.0 + usual + 2.0 * math.sqrt(usual)
+            excess = lost / of - self.allowed if clearly else 0.0
+            self._known[key] = Standing(candidate, n, signed, slacks, lost / max(of, 1), excess)
         return self._known[key]
+
+    def _lost_of(self, candidate: Values, n: int) -> tuple[int, int]:
+        """Return how many trials errors took, and of how many: of the first n, or a few more as they were computed."""
+        counts = self._lost[candidate]
+        of = min(each for each in counts if each >= n)
+        return counts[of], of
 
     def forget(self) -> None:
         """Give the memory of standings back; the trials stay."""

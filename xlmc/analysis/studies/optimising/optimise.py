@@ -32,13 +32,14 @@ from xlmc.montecarlo.loop.stopping import Interruption
 from xlmc.montecarlo.model.loading import build_model
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import run_model
-from xlmc.montecarlo.simulation.simulation import RunResult
+from xlmc.montecarlo.simulation.simulation import ERROR_SHARE, RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
 from xlmc.montecarlo.statistics.number_text import exact_text, number_text
 
-__all__ = ["RUNS", "Held", "OptimiseArguments", "Optimised", "optimise"]
+__all__ = ["ALLOW_LOST", "RUNS", "Excluded", "Held", "OptimiseArguments", "Optimised", "optimise"]
 
+ALLOW_LOST: Final = 100.0 * ERROR_SHARE
 RUNS: Final = 60.0
 """Trials that the search may take, as a multiple of those of a run."""
 _FRESH_RUNS: Final = 30.0
@@ -57,6 +58,7 @@ class OptimiseArguments(TypedDict, total=False):
     subject_to: Sequence[str]
     decisions: Iterable[str]
     indifference: float | None
+    allow_lost: float
     runs: float
     trials: int | None
     seed: int | None
@@ -84,6 +86,20 @@ class Held:
         return self.requirement.slack.exact
 
 
+@dataclass(frozen=True, slots=True)
+class Excluded:
+    """A candidate that cannot be the best, since too many of its trials are lost to errors.
+
+    Attributes:
+        lost: the share of its trials.
+        looks_better: whether the trials that are left make it better than the best by more than the indifference.
+    """
+
+    candidate: Values
+    lost: float
+    looks_better: bool
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Optimised(Shown):
     """The best candidate that was tried, and how sure that is.
@@ -106,6 +122,11 @@ class Optimised(Shown):
         ended: why the search ended early; empty where it did not.
         curve: of a single decision, its values with the goal and its error; else empty.
         search_seed: the seed of the search's trials.
+        lost: the share of the best one's fresh trials that errors take.
+        lost_as_it_is: the same with the workbook's own decisions; 0 where they are no candidate.
+        allowed: the share that they may take.
+        excluded: the candidates of which errors take clearly more, the share, and whether the trials that are left make
+            it better than the best by more than the indifference; those first, then the others.
     """
 
     run: RunResult
@@ -124,11 +145,21 @@ class Optimised(Shown):
     ended: str
     curve: tuple[tuple[float, float, float], ...]
     search_seed: int
+    lost: float
+    lost_as_it_is: float
+    allowed: float
+    excluded: tuple[Excluded, ...]
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether errors take no more trials of the best than they may."""
+        return self.lost <= self.allowed
 
     @property
     def meets(self) -> bool:
-        """Whether every requirement is met, more likely than not."""
-        return all(each.chance > 0.5 for each in self.held) and not math.isnan(self.found.value)
+        """Whether every requirement is met, more likely than not, by trials of which errors take few enough."""
+        held = all(each.chance > 0.5 for each in self.held)
+        return held and not math.isnan(self.found.value) and self.is_whole
 
     @property
     def values(self) -> dict[str, float]:
@@ -144,6 +175,7 @@ def optimise(
     subject_to: Sequence[str] = (),
     decisions: Iterable[str] = (),
     indifference: float | None = None,
+    allow_lost: float = ALLOW_LOST,
     runs: float = RUNS,
     trials: int | None = None,
     seed: int | None = None,
@@ -161,6 +193,8 @@ def optimise(
         decisions: names of those that are chosen, joined by commas, `*` for any letters; all where there are none.
         indifference: a difference of the goal that does not matter; by default 1 % of the difference between the best
             and a middling candidate, or two errors of the goal in a run if that is more.
+        allow_lost: percent of its trials that a candidate may lose to errors in cells; one that loses more cannot be
+            the best, for nobody knows what the lost trials would have been.
         runs: trials that the search may take, as a multiple of those of a run.
         trials: of a run; as in `Model.simulate`, like what follows.
         seed: of the run; the search has another one.
@@ -180,7 +214,10 @@ def optimise(
         raise SimulationError(
             f"A search of {number_text(runs)} runs, or an indifference of {indifference}, is none", hint=hint
         )
-    reader = Reader(model, chosen)
+    if not 0.0 <= allow_lost <= 100.0:
+        message = f"{number_text(allow_lost)} % of the trials cannot be lost to errors"
+        raise SimulationError(message, hint="Give a percentage from 0 to 100")
+    reader, allowed = Reader(model, chosen), allow_lost / 100.0
     goal = reader.goal(maximise or minimise or "", maximise=maximise is not None)
     requirements = tuple(map(reader.requirement, subject_to))
     options = RunOptions.of(trials=trials, seed=seed, engine=engine, jobs=jobs, evidence="rejection", keep_inputs=None)
@@ -192,7 +229,7 @@ def optimise(
 
         def tried(with_seed: int, most: float) -> Tried:
             computed = CandidateTrials(model, chosen, settings.engine, with_seed, reader.columns, jobs)
-            return Tried(computed, goal, requirements, most * settings.trials, lambda: interruption.asked)
+            return Tried(computed, goal, requirements, most * settings.trials, lambda: interruption.asked, allowed)
 
         search_seed = settings.seed + 1
         seeking, ended = tried(search_seed, runs), ""
@@ -241,6 +278,10 @@ def optimise(
         ended=ended,
         curve=_curve(seeking) if len(chosen) == 1 else (),
         search_seed=search_seed,
+        lost=fresh.standing(best, settings.trials).lost,
+        lost_as_it_is=0.0 if own is None else fresh.standing(own, settings.trials).lost,
+        allowed=allowed,
+        excluded=_excluded(seeking, best, difference),
     )
 
 
@@ -321,6 +362,17 @@ def _held(requirement: Requirement, columns: Floats, best: Values, n: int) -> He
     return Held(requirement, _estimate(requirement.left.of(columns, best), n), chance)
 
 
+def _excluded(tried: Tried, best: Values, indifference: float) -> tuple[Excluded, ...]:
+    """Return the candidates that lose too many trials, those first that look better than the best."""
+    found = []
+    for each in map(tried.standing, tried.columns):
+        if each.excess and each.candidate != best:
+            looks_better = all(not slack.value < 0.0 for slack in each.slacks)
+            looks_better = looks_better and tried.better(best, each.candidate)[0] > indifference
+            found.append(Excluded(each.candidate, each.lost, looks_better))
+    return tuple(sorted(found, key=lambda each: not each.looks_better))
+
+
 def _curve(tried: Tried) -> tuple[tuple[float, float, float], ...]:
     """Return the values of a single decision with the goal and its error, ascending; all over the same trials."""
     n = min(map(tried.length, tried.columns))
@@ -328,5 +380,5 @@ def _curve(tried: Tried) -> tuple[tuple[float, float, float], ...]:
     return tuple(
         (each.candidate[0], tried.goal.sign * each.goal.value, each.goal.error)
         for each in known
-        if math.isfinite(each.goal.value) and math.isfinite(each.goal.error)
+        if math.isfinite(each.goal.value) and math.isfinite(each.goal.error) and not each.excess
     )

@@ -49,8 +49,8 @@ CASES = {
     "values that are words": (
         decided("W", "=Model!F1", "800; big", headings=["Name", "Cell", "Values"]),
         "T!C2",
-        "Values holds no list of numbers",
-        "Separate the numbers by semicolons",
+        "Values lists numbers and 'big'",
+        "separated by semicolons",
     ),
     "a heading misspelt": (
         decided("W", "=Model!F1", 800, 950, 50, headings=["Name", "Cell", "Low", "Hihg", "Step"]),

@@ -68,14 +68,10 @@ def decide(
 
 def _doubts(found: Decided) -> list[str]:
     """Return why the answers of combinations must not be used."""
+    from xlmc.analysis.studies.decisions import values_text
+
     doubts = [f"{each.answers.name}: {warning}" for each in found.combinations for warning in each.answers.warnings]
     return [
         *doubts,
-        *(f"{_values_text(found, values)}: not possible: {why}" for values, why in found.impossible.items()),
+        *(f"{values_text(found.decisions, each)}: not possible: {why}" for each, why in found.impossible.items()),
     ]
-
-
-def _values_text(found: Decided, values: tuple[float, ...]) -> str:
-    from xlmc.montecarlo.statistics.number_text import exact_text
-
-    return ", ".join(f"{each.name} = {exact_text(at)}" for each, at in zip(found.decisions, values, strict=True))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -139,7 +140,12 @@ def _doubts(found: Optimised) -> list[str]:
     from xlmc.outputs.studies.optimise import lost_sentences
 
     missed = [each.requirement.text for each in found.held if each.chance <= 0.5]
-    doubts = [f"No candidate that was found meets what is required: {text} fails" for text in missed]
+    found_one = any(each.meets for each in found.rivals)
+    none = "The best of the search" if found_one else "No candidate that was found"
+    verb = "does not meet" if found_one else "meets"
+    doubts = [f"{none} {verb} what is required: {text} fails" for text in missed]
+    if math.isnan(found.found.value) and not found.run.warnings:
+        doubts.append("No candidate gives a number for what is asked")
     if not found.is_whole or any(each.looks_better for each in found.excluded):
         doubts += [each.rstrip(".") for each in lost_sentences(found)]
     return doubts

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
@@ -81,7 +82,7 @@ def _cells(answer: ForecastAnswer, ranges: bool, above: bool) -> list[str]:
 
 def _change(found: Estimate | None, *, share: bool = False) -> str:
     """`+0.59 ± 0.03`, of shares in percentage points; empty for the workbook itself."""
-    if found is None:
+    if found is None or math.isnan(found.value):
         return ""
     scale = 100.0 if share else 1.0
     text = format_estimate(scale * found.value, None if found.error is None else scale * found.error)

@@ -151,7 +151,7 @@ def test_an_impossible_combination_does_not_stop_the_others(book, tmp_path):
         (["Order", "=Inputs!B5", 1, 2, 1e-9, None, None], "are more than 100,000", "Decisions!E2"),
         (["Order", "=Inputs!B5", None, 2, None, None, None], "has no Low", "Decisions!C2"),
         (["Order", "=Inputs!B5", 1, None, None, "1; 2", None], "Values and Low are both given", "Decisions!C2"),
-        (["Order", "=Inputs!B5", None, None, None, "one; two", None], "no list of numbers", "Decisions!F2"),
+        (["Order", "=Inputs!B5", None, None, None, "one, two", None], "lists one value, 'one, two'", "Decisions!F2"),
     ],
 )
 def test_mistakes_are_named_with_their_cell(book, row, message, where):

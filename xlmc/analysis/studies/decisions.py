@@ -22,7 +22,7 @@ from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import count_text, exact_text
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = [
     "MOST_COMBINATIONS",
@@ -33,6 +33,7 @@ __all__ = [
     "Decided",
     "decide",
     "of_forecast",
+    "values_text",
 ]
 
 MOST_DECISIONS: Final = 3
@@ -224,7 +225,12 @@ def _chosen(model: CompiledModel, names: Iterable[str]) -> tuple[Decision, ...]:
     return chosen
 
 
+def values_text(decisions: Sequence[Decision], values: Sequence[float]) -> str:
+    """Write values of decisions: `Order = 40, Colour = red`."""
+    return ", ".join(f"{each.name} = {each.shown(value)}" for each, value in zip(decisions, values, strict=True))
+
+
 def _scenario(decisions: Sequence[Decision], values: Sequence[float]) -> Scenario:
     pairs = list(zip(decisions, values, strict=True))
-    changes = tuple(Typed(each.cell, value, named=each.name) for each, value in pairs)
-    return Scenario(", ".join(f"{each.name} = {exact_text(value)}" for each, value in pairs), changes)
+    changes = tuple(Typed(each.cell, each.content(value), named=each.name) for each, value in pairs)
+    return Scenario(values_text(decisions, values), changes)

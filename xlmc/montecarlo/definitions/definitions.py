@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from xlmc.errors import DefinitionError, ErrorCode, FormulaError, Notice
 from xlmc.excel.address import Area, Cell, InFormula
 from xlmc.excel.formula.ir import Expression
+from xlmc.excel.workbook.workbook import CellValue
 from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.feeds import Feeding
 from xlmc.montecarlo.definitions.run_settings import USUAL, Settings
@@ -295,6 +296,8 @@ class Decision:
         values: those that a table of decisions tries: listed, or from the least to the largest.
         between: the least and the largest, where any value between them may be chosen; None where the values are all.
         listed: whether they were listed one by one, so that neighbours need not be alike.
+        contents: of values that are texts, TRUE or FALSE what is typed into the cell, each at its value, from 0; else
+            empty.
     """
 
     name: str
@@ -304,6 +307,25 @@ class Decision:
     units: str = ""
     between: tuple[float, float] | None = None
     listed: bool = False
+    contents: tuple[str | bool, ...] = ()
+
+    def content(self, value: float) -> float | str | bool:
+        """Return what is typed into the cell for a value."""
+        return self.contents[int(value)] if self.contents else value
+
+    def shown(self, value: float) -> str:
+        """Write a value as the cell then shows it."""
+        content = self.content(value)
+        if isinstance(content, bool):
+            return "TRUE" if content else "FALSE"
+        return content if isinstance(content, str) else exact_text(content)
+
+    def value_of(self, content: CellValue) -> float | None:
+        """Return the value that a cell's content is; None where it is none, or no number."""
+        if self.contents:
+            alike = [at for at, each in enumerate(self.contents) if each == content and type(each) is type(content)]
+            return float(alike[0]) if alike else None
+        return float(content) if isinstance(content, int | float) else None
 
     @property
     def values_text(self) -> str:
@@ -311,7 +333,7 @@ class Decision:
         if self.between is not None:
             return f"{exact_text(self.between[0])} to {exact_text(self.between[1])}"
         if self.listed or len(self.values) < 3:
-            return "; ".join(map(exact_text, self.values))
+            return "; ".join(map(self.shown, self.values))
         step = float(f"{self.values[1] - self.values[0]:.12g}")
         return f"{exact_text(self.values[0])} to {exact_text(self.values[-1])} in steps of {exact_text(step)}"
 

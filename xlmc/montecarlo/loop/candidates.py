@@ -93,6 +93,8 @@ class CandidateTrials:
         self._model, self._decisions, self._seed = model, decisions, seed
         self._engine, self._wanted, self._jobs = engine, tuple(wanted), jobs
         self._typed: dict[Values, CompiledModel | None] = {}
+        self._by_texts: dict[Values, CandidateTrials | None] = {}
+        self._is_text = tuple(bool(each.contents) for each in decisions)
         self._runners: dict[tuple[int, int], tuple[_HeldDraws, ModelRunner]] = {}
         self.computed = 0
         self._held = self._with_inputs()
@@ -100,6 +102,8 @@ class CandidateTrials:
 
     def forecasts(self, candidates: Sequence[Values], start: int, stop: int) -> list[Computed]:
         """Return the trials of each candidate from `start` to `stop`."""
+        if any(self._is_text):
+            return self._of_texts(candidates, start, stop)
         found = [Computed(np.full((len(self._wanted), stop - start), np.nan)) for _ in candidates]
         workers = max(1, min(self._jobs, len(candidates)))
         shares = [range(number, len(candidates), workers) for number in range(workers)]
@@ -181,7 +185,7 @@ class CandidateTrials:
 
     def _model_of(self, candidate: Values) -> CompiledModel | None:
         if candidate not in self._typed:
-            typed = {each.cell: value for each, value in zip(self._decisions, candidate, strict=True)}
+            typed = {each.cell: each.content(value) for each, value in zip(self._decisions, candidate, strict=True)}
             try:
                 found = model_with_values(self._model, typed)
                 same = [f.name for f in found.forecasts] == [f.name for f in self._model.forecasts]
@@ -190,9 +194,42 @@ class CandidateTrials:
                 self._typed[candidate] = None
         return self._typed[candidate]
 
+    def _of_texts(self, candidates: Sequence[Values], start: int, stop: int) -> list[Computed]:
+        """Compute candidates that have the same texts as those of one workbook, into which these are typed."""
+        found = [Computed(np.full((len(self._wanted), stop - start), np.nan)) for _ in candidates]
+        texts = [self._part(each, of_texts=True) for each in candidates]
+        for key in dict.fromkeys(texts):
+            trials = self._trials_of(key)
+            if trials is None:
+                continue
+            numbers = [number for number, each in enumerate(texts) if each == key]
+            parts = [self._part(candidates[number], of_texts=False) for number in numbers]
+            for number, each in zip(numbers, trials.forecasts(parts, start, stop), strict=True):
+                found[number] = each
+        self.computed += len(candidates) * (stop - start)
+        return found
+
+    def _part(self, candidate: Values, *, of_texts: bool) -> Values:
+        return tuple(value for value, is_text in zip(candidate, self._is_text, strict=True) if is_text == of_texts)
+
+    def _trials_of(self, texts: Values) -> CandidateTrials | None:
+        """Return what computes the candidates with these texts; None where the workbook is not possible with them."""
+        if texts not in self._by_texts:
+            typing = [each for each in self._decisions if each.contents]
+            typed = {each.cell: each.content(value) for each, value in zip(typing, texts, strict=True)}
+            others = [each for each in self._decisions if not each.contents]
+            try:
+                model = model_with_values(self._model, typed)
+                same = [f.name for f in model.forecasts] == [f.name for f in self._model.forecasts]
+                made = CandidateTrials(model, others, self._engine, self._seed, self._wanted, self._jobs)
+                self._by_texts[texts] = made if same else None
+            except XlmcError:
+                self._by_texts[texts] = None
+        return self._by_texts[texts]
+
     def _with_inputs(self) -> CompiledModel | None:
         """Return the model with the decisions as inputs; None where that is not the workbook with them typed in."""
-        if self._model.definitions.feeding is not None:
+        if self._model.definitions.feeding is not None or any(self._is_text):
             return None
         try:
             found = _model_with_inputs(self._model, self._decisions)

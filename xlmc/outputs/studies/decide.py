@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.decisions import Combination, Decided
+    from xlmc.montecarlo.definitions.definitions import Decision
     from xlmc.outputs.document.parts import Block, Figure, Table
     from xlmc.outputs.study_report import StudyReport
 
@@ -109,14 +110,16 @@ def _blocks(found: Decided) -> Iterator[Block]:
 
 
 def _table(found: Decided, index: int) -> Table:
-    from xlmc.montecarlo.statistics.number_text import exact_text
     from xlmc.outputs.document.parts import Table
     from xlmc.outputs.scenario_tables import answer_heads, answer_rows
 
     answers = [found.base, *(each.answers for each in found.combinations)]
     decisions = [", ".join(filter(None, (each.name, each.units))) for each in found.decisions]
     values = [(found.base.name, *[""] * (len(decisions) - 1))]
-    values += [tuple(map(exact_text, each.values)) for each in found.combinations]
+    values += [
+        tuple(one.shown(at) for one, at in zip(found.decisions, each.values, strict=True))
+        for each in found.combinations
+    ]
     heads = (*decisions, *answer_heads(answers, index)[1:])
     rows = tuple((*at, *row[1:]) for at, row in zip(values, answer_rows(answers, index), strict=True))
     return Table(answers[0].forecasts[index].title, heads, rows, tuple(range(len(heads))))
@@ -124,18 +127,20 @@ def _table(found: Decided, index: int) -> Table:
 
 def _trend(found: Decided, index: int) -> Figure | None:
     """Draw the means over the values of the first decision: of two a line for each value of the second."""
-    from xlmc.montecarlo.statistics.number_text import exact_text
     from xlmc.outputs.document.parts import Chart, Figure, Line, Lines
 
     first, *others = found.decisions
     answer = found.base.forecasts[index]
     points = [(each.values, each.answers.forecasts[index]) for each in found.combinations]
-    if len(first.values) < 2 or len(points) < 2:
+    if len(first.values) < 2 or len(points) < 2 or first.contents:
         return None
     if others:
         (second,) = others
         lines = [
-            (f"{second.name} = {exact_text(at)}", [(v[0], a.mean.value, a.mean.error) for v, a in points if v[1] == at])
+            (
+                f"{second.name} = {second.shown(at)}",
+                [(v[0], a.mean.value, a.mean.error) for v, a in points if v[1] == at],
+            )
             for at in second.values[:_MOST_LINES]
         ]
     else:
@@ -166,14 +171,29 @@ def _as_json(found: Decided) -> dict[str, object]:
         "trials": run.trials,
         "seed": run.settings.seed,
         "decisions": [
-            {"name": each.name, "cell": str(each.cell), "units": each.units, "values": each.values}
+            {
+                "name": each.name,
+                "cell": str(each.cell),
+                "units": each.units,
+                "values": _contents([each] * len(each.values), each.values),
+            }
             for each in found.decisions
         ],
         "as_it_is": scenario_json(found.base),
-        "combinations": [{"values": each.values, **scenario_json(each.answers)} for each in found.combinations],
+        "combinations": [
+            {"values": _contents(found.decisions, each.values), **scenario_json(each.answers)}
+            for each in found.combinations
+        ],
         "best": [_best_json(found, each.name) for each in run.model.forecasts],
-        "impossible": [{"values": values, "why": why} for values, why in found.impossible.items()],
+        "impossible": [
+            {"values": _contents(found.decisions, values), "why": why} for values, why in found.impossible.items()
+        ],
     }
+
+
+def _contents(decisions: Sequence[Decision], values: Sequence[float]) -> list[float | str | bool]:
+    """Return what is typed into the cells of the decisions."""
+    return [each.content(value) for each, value in zip(decisions, values, strict=True)]
 
 
 def _best_json(found: Decided, forecast: str) -> dict[str, object]:
@@ -184,13 +204,14 @@ def _best_json(found: Decided, forecast: str) -> dict[str, object]:
     for name, least in (("largest", False), ("smallest", True)):
         best = found.best(forecast, least=least)
         told[name] = best and {
-            "values": best.combination.values,
+            "values": _contents(found.decisions, best.combination.values),
             "mean": estimate_json(best.mean),
-            "next": best.next and best.next.values,
+            "next": best.next and _contents(found.decisions, best.next.values),
             "ahead": best.ahead and estimate_json(best.ahead),
             "is_sure": best.is_sure,
         }
     told["losing_trials"] = [
-        {"values": each.values, "lost": each.answers.run.lost_share(forecast)} for each in found.losing(forecast)
+        {"values": _contents(found.decisions, each.values), "lost": each.answers.run.lost_share(forecast)}
+        for each in found.losing(forecast)
     ]
     return told

@@ -40,9 +40,9 @@ def optimise_report(found: Optimised, again: str = "") -> StudyReport:
 
 
 def _with_values(found: Optimised, values: tuple[float, ...]) -> str:
-    from xlmc.montecarlo.statistics.number_text import exact_text
+    from xlmc.analysis.studies.decisions import values_text
 
-    return ", ".join(f"{each.name} = {exact_text(at)}" for each, at in zip(found.decisions, values, strict=True))
+    return values_text(found.decisions, values)
 
 
 def _percent(share: float) -> str:
@@ -63,7 +63,8 @@ def _small(found: Optimised) -> str:
 
     measure = found.goal.measure
     if measure.form.factor != 1.0:
-        return f"{number_text(found.indifference * measure.form.factor)} percentage points"
+        points = number_text(found.indifference * measure.form.factor)
+        return f"{points} percentage point{'s' * (points != '1')}"
     text = measure.form.width(found.indifference)
     return f"{text} {measure.units}" if measure.units else text
 
@@ -75,19 +76,28 @@ def _sentences(found: Optimised) -> Iterator[str]:
     extreme = "largest" if found.goal.maximise else "smallest"
     best = _with_values(found, found.best)
     if math.isnan(found.found.value):
-        yield f"{_capital(measure.text)} is a number with none of the {found.tried:,} candidates that were tried."
+        of = f"none of the {count_text(found.tried)} candidates" if found.tried > 1 else "the only candidate"
+        gives = "gives no number" if found.tried == 1 else "gives a number"
+        yield f"{_capital(of)} that was tried {gives} for {measure.text}."
+        yield from _ended(found)
+        yield from lost_sentences(found)
         return
-    yield f"{_capital(measure.text)} is {extreme}, {measure.shown(found.found)}, with {best}."
+    if found.holds:
+        yield f"{_capital(measure.text)} is {extreme}, {measure.shown(found.found)}, with {best}."
+    else:
+        yield from _missing(found, best)
     for each in found.held:
         yield _held_text(each)
     others = "no other that was tried" if not found.held else "no other that was tried and meets this as surely"
-    among = f"Of {count_text(found.tried)} candidates" if found.tried > 1 else "Of one candidate"
-    yield (
-        f"{among}, {others} is better by more than {_small(found)}, a difference that does not matter here: "
-        f"{_percent(found.confidence)} confidence."
-    )
+    if found.tried == 1:
+        yield "It is the only candidate."
+    elif found.holds:
+        yield (
+            f"Of {count_text(found.tried)} candidates, {others} is better by more than {_small(found)}, a difference "
+            f"that does not matter here: {_percent(found.confidence)} confidence."
+        )
     better = [each for each in found.rivals if each.meets and each.told_apart and each.ahead > found.indifference]
-    for rival in better[:1]:
+    for rival in better[: int(found.holds)]:
         yield f"Fresh trials show {_with_values(found, rival.candidate)} to be better: give the search more --runs."
     alike = [each for each in found.rivals if each.meets and not each.told_apart]
     if alike:
@@ -101,8 +111,46 @@ def _sentences(found: Optimised) -> Iterator[str]:
         )
         yield f"With the workbook's own decisions {measure.text} is {own}{lost}."
     yield from lost_sentences(found)
+    yield from _without_number(found)
+    yield from _ended(found)
+
+
+def _missing(found: Optimised, best: str) -> Iterator[str]:
+    """Yield what is told first where the best of the search misses a requirement by fresh trials."""
+    measure = found.goal.measure
+    others = [each for each in found.rivals if each.meets]
+    if not others:
+        yield (
+            f"No candidate that was tried meets what is required. With {best}, which misses it the least, "
+            f"{measure.text} is {measure.shown(found.found)}."
+        )
+        return
+    yield (
+        f"By fresh trials {best}, the best of the search with {measure.shown(found.found)}, misses what is required; "
+        f"{_with_values(found, others[0].candidate)} meets it. More trials (-n) tell more."
+    )
+
+
+def _ended(found: Optimised) -> Iterator[str]:
     if found.ended:
         yield f"The search ended early, because {found.ended}: this is the best that was found by then."
+
+
+def _without_number(found: Optimised) -> Iterator[str]:
+    """Yield how many candidates give no number, and which texts nobody says."""
+    from xlmc.montecarlo.statistics.number_text import count_text
+
+    if found.numberless:
+        count = found.numberless
+        yield (
+            f"{count_text(count)} candidate{'s give' if count > 1 else ' gives'} no number, since no trial was "
+            "accepted, or the workbook is not possible with these values."
+        )
+    if found.indifferent:
+        yield "All candidates give the same: the decisions do not change what is asked for."
+    for name, text in found.unsaid:
+        texts = ", ".join(f"“{each}”" for each in found.run.labels.get(name, ()))
+        yield f"With these decisions no trial of {name} says “{text}”; its texts are {texts}."
 
 
 def lost_sentences(found: Optimised) -> Iterator[str]:
@@ -154,16 +202,18 @@ def _held_text(each: Held) -> str:
 
 
 def _blocks(found: Optimised) -> Iterator[Block]:
-    from xlmc.montecarlo.statistics.number_text import exact_text
     from xlmc.outputs.document.parts import Chart, Figure, Line, Lines, Table
 
     own = [found.run.model.workbook.content(each.cell).value for each in found.decisions]
     assert len(own) == len(found.best)
     rows = [
-        (each.name, exact_text(value), each.units, str(each.cell))
+        (each.name, each.shown(value), each.units, str(each.cell))
         for each, value in zip(found.decisions, found.best, strict=True)
     ]
-    yield Table("The best decisions", ("Decision", "Value", "Units", "Cell"), tuple(rows), (1,))
+    if math.isnan(found.found.value):
+        return
+    title = "The best decisions" if found.holds else "The decisions"
+    yield Table(title, ("Decision", "Value", "Units", "Cell"), tuple(rows), (1,))
     if found.held:
         stand = [
             (
@@ -194,13 +244,13 @@ def _axis(found: Optimised) -> str:
 
 def _rival_row(found: Optimised, each: Rival) -> tuple[str, ...]:
     from xlmc.montecarlo.statistics import Estimate
-    from xlmc.montecarlo.statistics.number_text import exact_text
 
     form = found.goal.measure.form
     sign = "+" if each.ahead > 0.0 else ""
     ahead = f"{sign}{form.spread(Estimate(each.ahead, each.error))}"
     apart = "yes" if each.told_apart else "no"
-    return (*map(exact_text, each.candidate), ahead, apart, "yes" if each.meets else "no")
+    values = (one.shown(at) for one, at in zip(found.decisions, each.candidate, strict=True))
+    return (*values, ahead, apart, "yes" if each.meets else "no")
 
 
 def _meaning(found: Optimised) -> str:
@@ -211,6 +261,10 @@ def _meaning(found: Optimised) -> str:
     )
 
 
+def _contents(found: Optimised, values: tuple[float, ...]) -> list[float | str | bool]:
+    return [each.content(value) for each, value in zip(found.decisions, values, strict=True)]
+
+
 def _as_json(found: Optimised, again: str) -> dict[str, object]:
     from xlmc.outputs.studies.json_numbers import estimate_json
 
@@ -219,7 +273,7 @@ def _as_json(found: Optimised, again: str) -> dict[str, object]:
         "book": str(run.model.path),
         "goal": {"text": found.goal.measure.text, "maximise": found.goal.maximise},
         "decisions": [
-            {"name": each.name, "cell": str(each.cell), "units": each.units, "value": value}
+            {"name": each.name, "cell": str(each.cell), "units": each.units, "value": each.content(value)}
             for each, value in zip(found.decisions, found.best, strict=True)
         ],
         "found": estimate_json(found.found),
@@ -236,7 +290,7 @@ def _as_json(found: Optimised, again: str) -> dict[str, object]:
         "confidence": found.confidence,
         "others": [
             {
-                "values": list(each.candidate),
+                "values": _contents(found, each.candidate),
                 "better_by": {"value": each.ahead, "error": each.error},
                 "told_apart": each.told_apart,
                 "meets_requirements": each.meets,
@@ -247,7 +301,7 @@ def _as_json(found: Optimised, again: str) -> dict[str, object]:
         ],
         "lost": {"share": found.lost, "as_it_is": found.lost_as_it_is, "allowed": found.allowed},
         "excluded": [
-            {"values": list(each.candidate), "lost": each.lost, "looks_better": each.looks_better}
+            {"values": _contents(found, each.candidate), "lost": each.lost, "looks_better": each.looks_better}
             for each in found.excluded
         ],
         "tried": found.tried,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Final
 
@@ -41,6 +41,7 @@ class Axis:
         count: how many there are.
         ordered: whether neighbours are alike.
         fine: whether they stand for any value of a range.
+        computed: whether an equality computes it from the others, so that it has no values of its own.
     """
 
     decision: Decision
@@ -48,6 +49,7 @@ class Axis:
     ordered: bool
     fine: bool
     step: float = 0.0
+    computed: bool = False
 
     @classmethod
     def of(cls, decision: Decision) -> Axis:
@@ -70,6 +72,8 @@ class Axis:
 
     def number(self, value: float) -> int | None:
         """Return the number of a value; None if it is none of them."""
+        if self.computed:
+            return 0
         found = min(range(self.count), key=lambda at: abs(self.value(at) - value)) if not self.fine else None
         if found is None:
             assert self.decision.between is not None
@@ -79,11 +83,79 @@ class Axis:
 
 
 @dataclass(frozen=True, slots=True)
+class Equalities:
+    """Sums of decisions that must be 0, solved for as many decisions that may have any value.
+
+    With F of `(e, d)` factors and c of `(e,)` constants they are F v + c = 0; v of the computed decisions D is then
+    −F_D⁻¹ (c + F_rest v_rest).
+
+    Attributes:
+        computed: the numbers of the decisions D.
+        factors: `(e, d)`, of D 0.
+        constants: `(e,)`.
+    """
+
+    computed: tuple[int, ...]
+    factors: Floats
+    constants: Floats
+
+    @classmethod
+    def of(cls, decisions: Sequence[Decision], requirements: Sequence[Requirement]) -> Equalities | None:
+        """Solve the equalities among requirements; None where there is none, or none has a decision of any value."""
+        sums = [each.slack for each in requirements if each.equal]
+        factors = np.zeros((len(sums), len(decisions)))
+        for row, each in zip(factors, sums, strict=True):
+            for term in each.terms:
+                row[term.at] += term.factor
+        constants, fine = np.array([each.constant for each in sums]), [d.between is not None for d in decisions]
+        pivots: dict[int, int] = {}
+        for number in range(len(sums)):  # Gauss and Jordan, with the largest factor of a decision of any value as pivot
+            left = [at for at in range(len(decisions)) if fine[at] and at not in pivots.values()]
+            sizes = np.abs(factors[number])
+            at = max(left, key=sizes.__getitem__, default=None)
+            if at is None or sizes[at] <= 1e-12 * sizes.max():
+                continue
+            constants[number] /= factors[number, at]
+            factors[number] /= factors[number, at]
+            for other in range(len(sums)):
+                if other != number and factors[other, at]:
+                    constants[other] -= factors[other, at] * constants[number]
+                    factors[other] -= factors[other, at] * factors[number]
+            pivots[number] = at
+        if not pivots:
+            return None
+        rows, computed = [*pivots], tuple(pivots.values())
+        kept = factors[rows].copy()
+        kept[:, computed] = 0.0
+        return cls(computed, kept, constants[rows])
+
+    def completed(self, values: Values) -> Values:
+        """Return the values of a candidate with those that are computed."""
+        found, given = [*values], np.array(values)
+        for at, value in zip(self.computed, (-(self.constants + self.factors @ given)).tolist(), strict=True):
+            size = max(abs(value), *map(abs, values), 1e-300)
+            found[at] = round(value, 12 - math.floor(math.log10(size))) + 0.0  # so that no rounding is shown
+        return tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
 class Space:
     """All candidates: a value of each decision, as far as what is required of decisions alone allows."""
 
     axes: tuple[Axis, ...]
     requirements: tuple[Requirement, ...]
+    equalities: Equalities | None = None
+
+    @classmethod
+    def of(cls, decisions: Sequence[Decision], requirements: tuple[Requirement, ...]) -> Space:
+        """Return the space of decisions: equalities compute some of those that may have any value from the others."""
+        axes, found = tuple(map(Axis.of, decisions)), Equalities.of(decisions, requirements)
+        if found is not None:
+            axes = tuple(
+                replace(axis, count=1, fine=False, computed=True) if number in found.computed else axis
+                for number, axis in enumerate(axes)
+            )
+        return cls(axes, requirements, found)
 
     @property
     def size(self) -> int:
@@ -97,11 +169,22 @@ class Space:
 
     def candidate(self, numbers: Iterable[int]) -> Values:
         """Return a candidate by the numbers of its values."""
-        return tuple(axis.value(int(number)) for axis, number in zip(self.axes, numbers, strict=True))
+        values = tuple(axis.value(int(number)) for axis, number in zip(self.axes, numbers, strict=True))
+        return values if self.equalities is None else self.equalities.completed(values)
 
     def allows(self, candidate: Values) -> bool:
         """Whether what is required of decisions alone is met."""
-        return all(each.holds_for(candidate) for each in self.requirements)
+        held = all(each.holds_for(candidate) for each in self.requirements)
+        return held and not self._beyond(candidate)
+
+    def _beyond(self, candidate: Values) -> float:
+        """Return how far computed decisions lie beyond their ranges, as shares of these; added up."""
+        found = 0.0
+        for axis, value in zip(self.axes, candidate, strict=True):
+            if axis.computed and axis.decision.between is not None:
+                low, high = axis.decision.between
+                found += max(0.0, low - value, value - high) / (high - low)
+        return found
 
     def every(self) -> Iterator[Values]:
         """Yield all candidates that are allowed."""
@@ -109,8 +192,8 @@ class Space:
 
     def excess(self, candidate: Values) -> float:
         """Return by how much decisions alone miss what is required; 0 where they meet it."""
-        slacks = (each.slack.of(np.empty((0, 0)), candidate).value for each in self.requirements if each.slack.exact)
-        return math.fsum(max(0.0, -slack) for slack in slacks)
+        slacks = (each.measured(np.empty((0, 0)), candidate).value for each in self.requirements if each.slack.exact)
+        return math.fsum((*(max(0.0, -slack) for slack in slacks), self._beyond(candidate)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -226,7 +309,7 @@ class Tried:
         if key not in self._known:
             columns = self.columns[candidate][:, :n]
             goal = self.goal.measure.of(columns, candidate)
-            slacks = tuple(each.slack.of(columns, candidate) for each in self.requirements)
+            slacks = tuple(each.measured(columns, candidate) for each in self.requirements)
             signed = Measured(self.goal.sign * goal.value, _times(self.goal.sign, goal), goal.least)
             lost, of = self._lost_of(candidate, n)
             usual = self.allowed * of

@@ -1,10 +1,10 @@
 """What is made large or small, and what is required: sums of statistics of forecasts and of decisions, in words.
 
     goal         = sum
-    requirement  = sum (">=" | "<=" | ">" | "<") sum
+    requirement  = sum (">=" | "<=" | ">" | "<") sum, and of decisions alone also "="
     sum          = ["-"] term {("+" | "-") term}
     term         = [number "*"] (statistic | decision) | number
-    statistic    = ("mean" | "median" | "SD" | "P" number) "of" forecast
+    statistic    = ("mean" | "median" | "SD" | "variance" | "CV" | "P" number) "of" forecast
                  | ("probability" | "certainty") ("of" | "that") forecast [limits]
     limits       = "above" number | "below" number | "at least" number | "at most" number
                  | "between" number "and" number | ("is" | "=") text | (">" | ">=" | "<" | "<=") number, after "that"
@@ -46,9 +46,16 @@ the least error that it has."""
 
 _LEAST_TRIALS: Final = 2
 
+_NOISE: Final = 1e-13
+"""Differences that are rounding, as a share of the numbers."""
+
+_SLACK: Final = 1e-12
+"""By how much decisions may miss what is required of them, by rounding, as a share of its terms."""
+
 _NUMBER: Final = re.compile(r"(?:\d[\d,]*\.?\d*|\.\d+)(?:[eE][+-]?\d+)?\s*%?")
 _STATISTIC: Final = re.compile(
     r"(?:the\s+)?(?:(?P<mean>mean|average|expected value)|(?P<median>median)|(?P<sd>sd|std dev|standard deviation)"
+    r"|(?P<variance>variance)|(?P<cv>cv|coefficient of variation)"
     r"|p(?P<percent>\d+(?:\.\d+)?)|(?P<percentile>\d+(?:\.\d+)?)(?:st|nd|rd|th)\s+percentile"
     r"|(?P<share>probability|certainty|chance))\s+(?P<link>of|that)\b\s*",
     re.IGNORECASE,
@@ -64,6 +71,14 @@ _COMPARES: Final[dict[str, Callable[[Floats, float], Bools]]] = {
     "<": np.less,
     "<=": np.less_equal,
 }
+_NO_STATISTIC: Final = re.compile(r"(?:the\s+)?(?P<name>\w[\w .%-]*?)\s+of\b", re.IGNORECASE)
+_WITHOUT_OF: Final = re.compile(
+    r"(?P<name>mean|average|median|sd|std dev|variance|cv|p\d+(?:\.\d+)?|probability|certainty)\s+(?!of\b|that\b)"
+    r"(?P<rest>.+)",
+    re.IGNORECASE,
+)
+_STATISTICS: Final = "There are mean, median, SD, variance, CV, any percentile such as P5, and probability"
+_EXTREMES: Final = ("maximum", "max", "largest value", "minimum", "min", "smallest value")
 _EXAMPLE: Final = 'Such as "mean of NPV", "P5 of NPV", "SD of NPV", "probability of NPV above 0", or "2*A + B"'
 
 
@@ -97,12 +112,16 @@ def _error(pulls: Floats) -> float:
 def apart(first: Measured, second: Measured) -> tuple[float, float]:
     """Return how far the second lies above the first over the same trials, and the standard error of that."""
     difference = second.value - first.value
+    noise = _NOISE * max(abs(first.value), abs(second.value))
+    if abs(difference) <= noise:
+        difference = 0.0
     if first.pulls is None or second.pulls is None:
         return difference, math.hypot(first.error, second.error)
     pulls = second.pulls - first.pulls
-    if not np.any(pulls):
+    error = _error(pulls)
+    if error <= noise:
         return difference, 0.0
-    return difference, max(_error(pulls), min(first.least, second.least))
+    return difference, max(error, min(first.least, second.least))
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,20 +216,33 @@ class Requirement:
         slack: how far it holds.
         left: the sum on its left, where the right side is a number; else the slack.
         strict: whether it must be above 0.
+        equal: whether it must be 0; only of decisions.
     """
 
     text: str
     slack: Measure
     left: Measure
     strict: bool
+    equal: bool = False
 
     def holds_for(self, values: Values) -> bool:
         """Whether decisions alone decide it, and meet it; True where statistics decide it."""
         if not self.slack.exact:
             return True
         found = self.slack.of(np.empty((0, 0)), values).value
-        scale = 1e-12 * (abs(self.slack.constant) + sum(abs(t.factor * values[t.at]) for t in self.slack.terms))
+        scale = _SLACK * (abs(self.slack.constant) + sum(abs(t.factor * values[t.at]) for t in self.slack.terms))
+        if self.equal:
+            return abs(found) <= scale
         return found > scale if self.strict else found >= -scale
+
+    def measured(self, columns: Floats, values: Values) -> Measured:
+        """Measure how far it holds: 0 or more where it does."""
+        found = self.slack.of(columns, values)
+        if not self.slack.exact:
+            return found
+        if self.holds_for(values):
+            return Measured(0.0 if self.equal else max(found.value, 0.0))
+        return Measured(-abs(found.value) or -_SLACK)
 
 
 class Reader:
@@ -225,7 +257,7 @@ class Reader:
     """
 
     def __init__(self, model: CompiledModel, decisions: Sequence[Decision]) -> None:
-        self._model = model
+        self._model, self._chosen = model, decisions
         self._forecasts = {name_key(each.name): number for number, each in enumerate(model.forecasts)}
         self._decisions = {name_key(each.name): number for number, each in enumerate(decisions)}
         self.columns: list[Column] = []
@@ -254,9 +286,12 @@ class Reader:
         relation = parsing.relation()
         right = parsing.sum()
         parsing.end()
+        if relation == "=" and not (left.exact and right.exact):
+            message = f"In {text!r} a statistic is to be one number, which no trials can tell"
+            raise SimulationError(message, hint="Give two requirements, one by >= and one by <=")
         if not left.terms and not right.terms:
             raise SimulationError(f"{text!r} asks for nothing of the workbook", hint=_EXAMPLE)
-        sign = 1.0 if relation.startswith(">") else -1.0
+        sign = -1.0 if relation.startswith("<") else 1.0
         terms = [_Term(sign * each.factor, each.number, each.at) for each in left.terms]
         terms += [_Term(-sign * each.factor, each.number, each.at) for each in right.terms]
         constant = sign * (left.constant - right.constant)
@@ -265,7 +300,7 @@ class Reader:
         if not right.terms and left.form.kind is Kind.YES_NO and not 0.0 <= right.constant <= 1.0:
             message = f"In {cleaned!r} a probability is compared with {number_text(right.constant)}"
             raise SimulationError(message, hint=f"Write {number_text(right.constant)}%, or a number from 0 to 1")
-        return Requirement(cleaned, slack, slack if right.terms else left, "=" not in relation)
+        return Requirement(cleaned, slack, slack if right.terms else left, "=" not in relation, relation == "=")
 
     def forecast(self, name: str) -> int | None:
         """Return the number of a forecast."""
@@ -274,6 +309,15 @@ class Reader:
     def decision(self, name: str) -> int | None:
         """Return the number of a decision."""
         return self._decisions.get(name_key(name))
+
+    def holds_texts(self, number: int) -> bool:
+        """Whether the values of a decision are no numbers."""
+        return bool(self._chosen[number].contents)
+
+    def spelt(self, key: str) -> str:
+        """Return a name as the workbook writes it."""
+        names = (*(each.name for each in self._model.forecasts), *(each.name for each in self._chosen))
+        return next(name for name in names if name_key(name) == name_key(key))
 
     @property
     def names(self) -> list[str]:
@@ -322,10 +366,10 @@ class _Parsing:
         """Read what stands between the sides of a requirement."""
         found = self._match(_RELATION)
         spelt = "" if found is None else _SPELT.get(found[0], found[0])
-        if not spelt.startswith((">", "<")):
-            hint = "Write >= or <= between what is required and its limit; for =, let a formula compute that decision"
+        if not spelt:
+            hint = "Write >= or <= between what is required and its limit, or = between decisions"
             raise self._wrong("a requirement is a comparison", hint)
-        return spelt
+        return "=" if spelt.startswith("=") else spelt
 
     def end(self) -> None:
         """See that nothing follows."""
@@ -349,7 +393,12 @@ class _Parsing:
         name = self._name()
         number = self._reader.decision(name)
         if number is None:
-            raise self._wrong(f"{name!r} is a forecast, and a statistic of it is asked for", _EXAMPLE)
+            raise self._wrong(
+                f"{self._reader.spelt(name)!r} is a forecast, and a statistic of it is asked for", _EXAMPLE
+            )
+        if self._reader.holds_texts(number):
+            hint = "Only decisions that are numbers can be required or added"
+            raise self._wrong(f"the values of {self._reader.spelt(name)!r} are texts", hint)
         self._forms.append((Form(), False, ""))
         return _Term(factor, None, number), 0.0
 
@@ -367,7 +416,22 @@ class _Parsing:
             if name_key(rest[: len(name)]) == name and not (beyond.isalnum() or beyond == "_"):
                 self._at = len(self._text) - len(rest) + len(name)
                 return name
-        raise self._wrong("there is no such statistic, forecast or decision", self._known(rest))
+        raise self._unknown(rest)
+
+    def _unknown(self, rest: str) -> SimulationError:
+        """Say what may have been meant by words that name nothing."""
+        known, without = _NO_STATISTIC.match(rest), _WITHOUT_OF.match(rest)
+        if known is not None and _STATISTIC.match(rest) is None:
+            if " ".join(known["name"].casefold().split()) in _EXTREMES:
+                hint = "It moves with the number of trials: ask for a percentile, such as P99 or P1"
+                return self._wrong(f"the {known['name']} has no error that trials could tell", hint)
+            return self._wrong(f"there is no statistic {known['name']!r}", _STATISTICS)
+        if without is not None and self._begins_with_name(without["rest"]):
+            return self._wrong("a word is missing", f'Write "{without["name"]} of {without["rest"].strip()}"')
+        return self._wrong("there is no such statistic, forecast or decision", self._known(rest))
+
+    def _begins_with_name(self, text: str) -> bool:
+        return any(name_key(text).startswith(name) for name in self._reader.names)
 
     def _known(self, rest: str = "") -> str:
         model = self._reader.model
@@ -379,7 +443,7 @@ class _Parsing:
         name = self._name()
         number = self._reader.forecast(name)
         if number is None:
-            raise self._wrong(f"{name!r} is a decision, and not a forecast", _EXAMPLE)
+            raise self._wrong(f"{self._reader.spelt(name)!r} is a decision, and not a forecast", _EXAMPLE)
         model = self._reader.model
         forecast, is_text = model.forecasts[number], number in model.categories
         code = model.formats[forecast.name]
@@ -397,6 +461,9 @@ class _Parsing:
         if found["sd"] is not None:
             self._forms.append((form, True, forecast.units))
             return _Term(factor, _deviation, at)
+        if found["variance"] is not None or found["cv"] is not None:
+            self._forms.append((Form(), False, ""))
+            return _Term(factor, _variance if found["cv"] is None else _variation, at)
         percent = 50.0 if found["median"] is not None else float(found["percent"] or found["percentile"])
         if not 0.0 < percent < 100.0:
             raise self._wrong(f"{number_text(percent)} is no percentile", "Percentiles lie above 0 and below 100")
@@ -484,6 +551,22 @@ def _deviation(x: Floats) -> tuple[float, Floats, float]:
     squares = (x - x.mean()) ** 2
     s = math.sqrt(float(squares.sum()) / (x.size - 1))
     return s, (squares - s * s) / (2.0 * s * x.size) if s else np.zeros(x.size), 0.0
+
+
+def _variance(x: Floats) -> tuple[float, Floats, float]:
+    """Return the variance s²; a trial pulls it by ((x − mean)² − s²)/m."""
+    squares = (x - x.mean()) ** 2
+    variance = float(squares.sum()) / (x.size - 1)
+    return variance, (squares - variance) / x.size, 0.0
+
+
+def _variation(x: Floats) -> tuple[float, Floats, float]:
+    """Return the coefficient of variation s/mean, as results tell it; its pulls are those of s and of the mean."""
+    s, pulls_s, _ = _deviation(x)
+    mean, pulls, _ = _mean(x)
+    if not mean:
+        return math.nan, np.zeros(x.size), 0.0
+    return s / mean, pulls_s / mean - s / mean**2 * pulls, 0.0
 
 
 def _quantile(x: Floats, share: float) -> tuple[float, Floats, float]:

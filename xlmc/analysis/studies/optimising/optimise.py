@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.comparison.variations import names_of, with_plain_sampling
-from xlmc.analysis.studies.optimising.candidates import Axis, Ended, Space, Standing, Tried
+from xlmc.analysis.studies.decisions import values_text
+from xlmc.analysis.studies.optimising.candidates import Ended, Space, Standing, Tried
 from xlmc.analysis.studies.optimising.measures import Goal, Measured, Reader, Requirement
 from xlmc.analysis.studies.optimising.search import search
 from xlmc.analysis.studies.optimising.selection import Rival, indifference_of, judged, leader, race, rivals_of
@@ -35,7 +36,7 @@ from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import ERROR_SHARE, RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
-from xlmc.montecarlo.statistics.number_text import exact_text, number_text
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = ["ALLOW_LOST", "RUNS", "Excluded", "Held", "OptimiseArguments", "Optimised", "optimise"]
 
@@ -43,6 +44,7 @@ ALLOW_LOST: Final = 100.0 * ERROR_SHARE
 RUNS: Final = 60.0
 """Trials that the search may take, as a multiple of those of a run."""
 _FRESH_RUNS: Final = 30.0
+_LEAST_TRIALS: Final = 30
 _SHOWN: Final = 10
 """Rivals that are told of."""
 
@@ -125,6 +127,9 @@ class Optimised(Shown):
         lost: the share of the best one's fresh trials that errors take.
         lost_as_it_is: the same with the workbook's own decisions; 0 where they are no candidate.
         allowed: the share that they may take.
+        numberless: candidates that give no number, though errors take few of their trials.
+        indifferent: whether all candidates give the same goal.
+        unsaid: texts that are asked for, and that the best decisions' run does not say: forecast and text.
         excluded: the candidates of which errors take clearly more, the share, and whether the trials that are left make
             it better than the best by more than the indifference; those first, then the others.
     """
@@ -148,6 +153,9 @@ class Optimised(Shown):
     lost: float
     lost_as_it_is: float
     allowed: float
+    numberless: int
+    indifferent: bool
+    unsaid: tuple[tuple[str, str], ...]
     excluded: tuple[Excluded, ...]
 
     @property
@@ -158,13 +166,17 @@ class Optimised(Shown):
     @property
     def meets(self) -> bool:
         """Whether every requirement is met, more likely than not, by trials of which errors take few enough."""
-        held = all(each.chance > 0.5 for each in self.held)
-        return held and not math.isnan(self.found.value) and self.is_whole
+        return self.holds and not math.isnan(self.found.value) and self.is_whole
 
     @property
-    def values(self) -> dict[str, float]:
+    def holds(self) -> bool:
+        """Whether every requirement is met, more likely than not."""
+        return all(each.chance > 0.5 for each in self.held)
+
+    @property
+    def values(self) -> dict[str, float | str | bool]:
         """Name of each decision -> its best value."""
-        return {each.name: value for each, value in zip(self.decisions, self.best, strict=True)}
+        return {each.name: each.content(value) for each, value in zip(self.decisions, self.best, strict=True)}
 
 
 def optimise(
@@ -209,11 +221,11 @@ def optimise(
     chosen = _chosen(model, decisions)
     if (maximise is None) == (minimise is None):
         raise SimulationError("What is to be largest, or smallest?", hint='Give one of them, such as "mean of NPV"')
-    if not runs >= 1.0 or (indifference is not None and not 0.0 <= indifference < math.inf):
-        hint = "Give a search of 1 run or more, and an indifference of 0 or more"
-        raise SimulationError(
-            f"A search of {number_text(runs)} runs, or an indifference of {indifference}, is none", hint=hint
-        )
+    if not 1.0 <= runs < math.inf:
+        raise SimulationError(f"A search of {number_text(runs)} runs is none", hint="Give 1 run or more")
+    if indifference is not None and not 0.0 <= indifference < math.inf:
+        message = f"{number_text(indifference)} is no difference of the goal"
+        raise SimulationError(message, hint="Give an indifference of 0 or more, in the unit of the goal")
     if not 0.0 <= allow_lost <= 100.0:
         message = f"{number_text(allow_lost)} % of the trials cannot be lost to errors"
         raise SimulationError(message, hint="Give a percentage from 0 to 100")
@@ -223,7 +235,10 @@ def optimise(
     options = RunOptions.of(trials=trials, seed=seed, engine=engine, jobs=jobs, evidence="rejection", keep_inputs=None)
     model = with_plain_sampling(model)
     settings = options.settings(model.definitions.settings)
-    space = Space(tuple(map(Axis.of, chosen)), requirements)
+    if settings.trials < _LEAST_TRIALS:
+        message = f"{count_text(settings.trials)} trials tell nothing about which decisions are best"
+        raise SimulationError(message, hint=f"Give {_LEAST_TRIALS} or more (--trials)")
+    space = Space.of(chosen, requirements)
     tell = tell or (lambda _: None)
     with Interruption(wanted=True) as interruption:
 
@@ -276,11 +291,12 @@ def optimise(
         trials=seeking.trials.computed + fresh.trials.computed + run.trials,
         how=how,
         ended=ended,
-        curve=_curve(seeking) if len(chosen) == 1 else (),
+        curve=_curve(seeking) if len(chosen) == 1 and not chosen[0].contents else (),
         search_seed=search_seed,
         lost=fresh.standing(best, settings.trials).lost,
         lost_as_it_is=0.0 if own is None else fresh.standing(own, settings.trials).lost,
         allowed=allowed,
+        **_what_is_odd(seeking, run, reader),
         excluded=_excluded(seeking, best, difference),
     )
 
@@ -295,10 +311,10 @@ def _chosen(model: CompiledModel, names: Iterable[str]) -> tuple[Decision, ...]:
 
 
 def _own(model: CompiledModel, decisions: Sequence[Decision]) -> Values | None:
-    """Return what the cells of the decisions hold; None where one of them holds no number."""
-    contents = [model.workbook.content(each.cell).value for each in decisions]
-    numbers = [float(each) for each in contents if isinstance(each, int | float)]
-    return tuple(numbers) if len(numbers) == len(contents) else None
+    """Return what the cells of the decisions hold; None where one of them holds no value that it may have."""
+    contents = (each.value_of(model.workbook.content(each.cell).value) for each in decisions)
+    known = [each for each in contents if each is not None]
+    return tuple(known) if len(known) == len(decisions) else None
 
 
 def _is_candidate(space: Space, values: Values) -> bool:
@@ -329,9 +345,8 @@ def _two_digits(number: float) -> float:
 def _run(model: CompiledModel, decisions: Sequence[Decision], best: Values, options: RunOptions) -> RunResult:
     """Run the workbook with the best decisions typed in, which the run then has as its file."""
     pairs = list(zip(decisions, best, strict=True))
-    name = ", ".join(f"{each.name} = {exact_text(value)}" for each, value in pairs)
-    changes = tuple(Typed(each.cell, value, named=each.name) for each, value in pairs)
-    edited = edited_workbook(model, Scenario(name, changes))
+    changes = tuple(Typed(each.cell, each.content(value), named=each.name) for each, value in pairs)
+    edited = edited_workbook(model, Scenario(values_text(decisions, best), changes))
     book = read_workbook(edited.data, model.workbook.name, model.workbook.functions)
     return run_model(with_plain_sampling(build_model(book, model.path)), options)
 
@@ -352,7 +367,7 @@ def _estimate(found: Measured, n: int) -> Estimate:
 
 
 def _held(requirement: Requirement, columns: Floats, best: Values, n: int) -> Held:
-    slack = requirement.slack.of(columns, best)
+    slack = requirement.measured(columns, best)
     if math.isnan(slack.value):
         chance = 0.0
     elif slack.error:
@@ -360,6 +375,24 @@ def _held(requirement: Requirement, columns: Floats, best: Values, n: int) -> He
     else:
         chance = float(slack.value >= 0.0)
     return Held(requirement, _estimate(requirement.left.of(columns, best), n), chance)
+
+
+class _Odd(TypedDict):
+    numberless: int
+    indifferent: bool
+    unsaid: tuple[tuple[str, str], ...]
+
+
+def _what_is_odd(tried: Tried, run: RunResult, reader: Reader) -> _Odd:
+    """Return what the person may not have meant, as `Optimised` describes it."""
+    known = [*map(tried.standing, tried.columns)]
+    goals = {each.goal.value for each in known if each.n == known[0].n}
+    asked = [(run.model.forecasts[number].name, text) for number, text in reader.columns if text is not None]
+    return {
+        "numberless": sum(math.isnan(each.goal.value) and not each.excess for each in known),
+        "indifferent": len(known) > 1 and len(goals) == 1 and not any(map(math.isnan, goals)),
+        "unsaid": tuple((name, text) for name, text in asked if text not in run.labels.get(name, ())),
+    }
 
 
 def _excluded(tried: Tried, best: Values, indifference: float) -> tuple[Excluded, ...]:

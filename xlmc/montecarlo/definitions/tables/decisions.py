@@ -66,8 +66,9 @@ def _decision(row: Row, computed: Computed, claims: Claims, findings: Findings) 
     if len(findings.problems) > before or identity is None or values is None:
         return None
     listed = row.filled("Values")
+    contents = _contents(row) if listed else ()
     between = None if listed or row.filled("Step") else (values[0], values[-1])
-    return Decision(*identity, values, row.where, units, between, listed)
+    return Decision(*identity, values, row.where, units, between, listed, contents)
 
 
 def _values(row: Row) -> tuple[float, ...]:
@@ -129,13 +130,42 @@ def values_between(low: float, high: float, step: float, where: Cell) -> tuple[f
     return tuple(np.minimum(low + step * np.arange(count), high).tolist())
 
 
+def _parts(row: Row) -> list[str]:
+    parts = (part.strip() for part in optional_text(row, "Values").split(";"))
+    return [part for part in dict.fromkeys(parts) if part]
+
+
+def _contents(row: Row) -> tuple[str | bool, ...]:
+    """Return the texts, TRUE and FALSE that a row lists; nothing where it lists numbers."""
+    parts = _parts(row)
+    if any(_number(part) is not None for part in parts):
+        return ()
+    known = {"true": True, "false": False}
+    return tuple(dict.fromkeys(known.get(part.casefold(), part) for part in parts))
+
+
 def _listed(row: Row) -> tuple[float, ...]:
-    parts = [part.strip() for part in optional_text(row, "Values").split(";")]
-    try:
-        found = tuple(dict.fromkeys(float(part) for part in parts if part))
-    except ValueError:
-        found = ()
-    if not found or not all(map(math.isfinite, found)):
-        message = f"{row.heading('Values')} holds no list of numbers"
-        raise DefinitionError(message, where=row.cell("Values"), hint="Separate the numbers by semicolons: 10; 20; 50")
+    """Return the numbers that a row lists; of texts their places, from 0.
+
+    Raises:
+        DefinitionError: it lists neither, or both.
+    """
+    texts, numbers = _contents(row), [_number(part) for part in _parts(row)]
+    if len(texts) > 1:
+        return tuple(map(float, range(len(texts))))
+    found = tuple(dict.fromkeys(each for each in numbers if each is not None))
+    if not found or len(found) < len(set(numbers)):
+        slip = next((part for part, each in zip(_parts(row), numbers, strict=True) if each is None), "")
+        what = f"numbers and {slip!r}" if found else f"one value, {slip!r}" if slip else "nothing"
+        message = f"{row.heading('Values')} lists {what}"
+        hint = "List numbers or texts, separated by semicolons: 10; 20; 50, or red; blue"
+        raise DefinitionError(message, where=row.cell("Values"), hint=hint)
     return found
+
+
+def _number(text: str) -> float | None:
+    try:
+        found = float(text)
+    except ValueError:
+        return None
+    return found if math.isfinite(found) else None

@@ -16,6 +16,7 @@ from types import ModuleType
 from typing import IO, NoReturn
 
 import pytest
+from command_line import Outcome, xlmc
 from fewer_sheets import SHORT, keep_few_trials, keep_sheets, leave_out_fits, leave_out_shapes
 from workbook_files import workbook_of
 
@@ -23,29 +24,9 @@ from xlmc.analysis.studies import fitting
 from xlmc.cli import main
 from xlmc.montecarlo.model.model import CompiledModel
 
+__all__ = ["xlmc"]
+
 ROOT = Path(__file__).resolve().parents[2]
-
-
-@dataclass(frozen=True)
-class Outcome:
-    code: int
-    out: str
-    err: str
-
-
-@pytest.fixture
-def xlmc(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], tmp_path: Path) -> Callable[..., Outcome]:
-    """`xlmc("check", path)` as typed in an empty folder."""
-    monkeypatch.chdir(tmp_path)
-
-    def run(*arguments: object) -> Outcome:
-        monkeypatch.setattr(sys, "argv", ["xlmc", *map(str, arguments)])
-        with pytest.raises(SystemExit) as stopped:
-            main()
-        captured = capsys.readouterr()
-        return Outcome(int(stopped.value.code or 0), captured.out, captured.err)
-
-    return run
 
 
 @pytest.fixture

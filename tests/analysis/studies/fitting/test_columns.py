@@ -7,13 +7,10 @@ import math
 import numpy as np
 import pytest
 
-import xlmc
 from xlmc.analysis.studies.fitting import columns as studied
 from xlmc.analysis.studies.fitting.columns import fit_columns
 from xlmc.errors import SimulationError
-from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.sampling.copulas import Clayton, Frank, Gumbel, StudentTCopula
-from xlmc.outputs.prepared.fitted_sheet import with_fits
 
 
 def measured(n=200, seed=3):
@@ -100,39 +97,3 @@ def test_the_bootstrap_spreads_as_the_likelihood_says():
     assert column.best.name == "Normal"
     for heading, error in column.best.errors.items():
         assert column.repeated[heading].std() == pytest.approx(error, rel=0.25)
-
-
-def test_a_book_of_fits_runs_and_its_parameters_are_uncertain(tmp_path):
-    found = fit_columns(measured(60), bootstraps=100)
-    path = tmp_path / "fitted.xlsx"
-    path.write_bytes(with_fits(None, found, "data.csv"))
-    import openpyxl
-
-    book = openpyxl.load_workbook(path)
-    sheet = book["Fitted"]
-    cells = {row[0].value: row[1].coordinate for row in sheet.iter_rows(min_row=6, max_row=11)}
-    answers = book.create_sheet("Answers")
-    formula = f"=Fitted!{cells['Speed']}^2/Fitted!{cells['Friction']}"
-    for row in (["Name", "Value"], ["Distance", formula]):
-        answers.append(row)
-    answers.add_table(openpyxl.worksheet.table.Table(displayName="xlmc_forecasts", ref="A1:B2"))
-    book.save(path)
-    model = xlmc.load(path)
-    bands = xlmc.uncertainty(model, outer=60, inner=100, seed=5)
-    assert set(bands.variable) == {"Friction", "Speed"}
-    assert all(": " in name for name in bands.uncertain)
-    assert len(bands.uncertain) == 4
-    run = model.simulate(20_000, keep_inputs=None)
-    friction = np.array(measured(60)["Friction"])
-    assert run.inputs["Friction"].mean() == pytest.approx(friction.mean(), abs=0.01)
-    assert np.corrcoef(run.inputs["Friction"], run.inputs["Speed"])[0, 1] > 0.6
-
-
-def test_a_sheet_is_added_to_a_book_that_has_tables(tmp_path):
-    path = tmp_path / "first.xlsx"
-    path.write_bytes(with_fits(None, fit_columns({"a": measured()["Friction"]}), "one"))
-    book = read_workbook(path)
-    path.write_bytes(with_fits(book, fit_columns({"b": measured()["Speed"]}), "two"))
-    tables = [table.name for table in read_workbook(path).tables]
-    assert len(tables) == 2
-    assert all(name.startswith("xlmc_assumptions") for name in tables)

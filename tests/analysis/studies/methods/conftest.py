@@ -1,12 +1,10 @@
 from __future__ import annotations
 
-from dataclasses import replace
-from importlib import import_module
 from pathlib import Path
 
 import pytest
+from methods_study import small_study, timed_study
 
-from xlmc.analysis.studies.methods import study
 from xlmc.montecarlo.model.loading import load
 
 ROOT = Path(__file__).resolve().parents[4]
@@ -19,26 +17,12 @@ def case_study():
 
 @pytest.fixture(scope="session")
 def small(case_study):
-    """Few and short runs of everything; what takes half a second is not run again to see what it costs."""
-    with pytest.MonkeyPatch.context() as patch:
-        module = import_module("xlmc.analysis.studies.methods.study")
-        patch.setattr(module, "_PATIENCE", 0.5)
-        return study(case_study, reference_trials=1 << 18, trials=1 << 13, replicates=2, seed=5)
-
-
-SECONDS = {"mc": 5e-7, "lhs": 6e-7, "sobol": 7e-7, "grid": 2e-6, "surrogate": 2e-6, "mc/jit": 1e-7, "mc/formulas": 4e-3}
-"""Of a trial, by method, about as on a machine that does nothing else."""
+    return small_study(case_study)
 
 
 @pytest.fixture(scope="session")
 def timed(small):
-    """The same with times that do not depend on the machine: what to choose follows from them."""
-
-    def clocked(curve):
-        each = SECONDS[curve.method.key]
-        return replace(curve, lengths=tuple(replace(runs, seconds=each * runs.budget) for runs in curve.lengths))
-
-    return replace(small, curves=tuple(map(clocked, small.curves)), engines=tuple(map(clocked, small.engines)))
+    return timed_study(small)
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from openpyxl.worksheet.table import Table
 
 from xlmc.excel.workbook.reader import read_workbook
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 SHARED = ROOT.parent / "shared" / "conformance" / "workbooks"
 
 MODEL = {
@@ -308,19 +308,3 @@ def test_plain_ranges_with_the_name_of_a_table_are_read(xlmc, tmp_path):
     assert "Uniform: Low 4, High 6" in outcome.out
     assert "is read as the table xlmc_assumptions" in outcome.err
     assert "S!A1" in outcome.out
-
-
-def test_the_blank_workbook_runs_as_it_is(xlmc):
-    outcome = xlmc("new", "blank", "mine.xlsx")
-    assert outcome.code == 0
-    assert [*read_workbook(Path("mine.xlsx")).sheets] == ["Model", "Guide", "xlmc"]
-    outcome = xlmc("check", "mine.xlsx")
-    assert outcome.code == 0
-    assert "No problem found" in outcome.out
-    assert xlmc("verify", "mine.xlsx", "--all").code == 0
-    sheet = openpyxl.load_workbook("mine.xlsx")["xlmc"]
-    lists = [each for each in sheet.data_validations.dataValidation if each.type == "list"]
-    assert len(lists) == 3
-    words = sheet[lists[0].formula1.replace("$", "")]
-    assert {"Uniform", "Normal", "Weibull"} <= {cell.value for (cell,) in words}
-    assert xlmc("new", "blank", "mine.xlsx").code == 2  # it is not replaced

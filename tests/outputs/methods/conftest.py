@@ -18,9 +18,9 @@ def timed(small):
 
 
 @pytest.fixture
-def sum_of_normals(book):
+def sum_of_normals(model_of):
     """S = 1 + 2a − 3b, a and b normal with SD 1 and 0.5: mean −2, variance 4 + 2.25."""
-    return book(
+    return model_of(
         {"A1": 3.0, "B1": 3.0, "C1": "=1+2*A1-3*B1"},
         {
             "a": {"cell": "A1", "distribution": "Normal", "mean": 3, "std_dev": 1},

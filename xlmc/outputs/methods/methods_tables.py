@@ -266,7 +266,7 @@ def _number(value: float) -> str:
     """Two significant digits, whole numbers from 10 on; a dash where there is none."""
     if not np.isfinite(value):
         return _NONE
-    return fixed_text(value, 0) if abs(value) >= 10 else styled_text(value, "#.2g")
+    return fixed_text(value, 0) if abs(value) >= 10 else styled_text(value, "#.2g").removesuffix(".")
 
 
 def _share_text(share: float, floor: float) -> str:

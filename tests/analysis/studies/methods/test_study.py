@@ -109,20 +109,6 @@ def test_the_command_is_one_for_this_workbook(small):
     assert re.search(r'`xlmc simulate "my book.xlsx" --trials \d+ --sampling \w+ --engine (numpy|jit)`', text)
 
 
-def test_the_tables(small):
-    bounds = {row[0]: row[2:] for row in methods_tables.bounds_table(small).rows}
-    assert bounds["Chevrolet delta-V"][:2] == ("8.87 to 18.70", "8.85 to 15.88")
-    errors = {row[0]: row[1:] for row in methods_tables.error_table(small).rows}
-    assert [*errors] == [curve.method.name for curve in small.every if curve.answers]
-    assert errors["Monte Carlo"][0] == "8,192"
-    assert errors["Taylor, first order"][-1] == "never"
-    assert errors["Monte Carlo, engine formulas"][1].startswith("≈ ")
-    assert len(methods_tables.forecast_table(small).rows) == 4 * (1 + len(errors))
-    assert {row[0] for row in methods_tables.reference_table(small).rows} == set(small.varying)
-    sentence = dict(methods_tables.cannot_lines(small))
-    assert "does not see filters" in sentence["Taylor, second order"]
-
-
 def test_need_follows_the_square_root(small):
     """Half the accuracy asked for is a fourth of the trials, where errors fall with their square root."""
     plain = next(curve for curve in small.curves if curve.method.key == "mc")

@@ -9,7 +9,14 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mpf
 
-from xlmc.engine.passes.random_rounding import RandomRounding, closure, evaluate, numbers_of, term_sizes
+from xlmc.engine.passes.random_rounding import (
+    RandomRounding,
+    closure,
+    evaluate,
+    numbers_of,
+    open_constants,
+    term_sizes,
+)
 from xlmc.excel.functions.values import Value, constant
 
 
@@ -89,3 +96,34 @@ def test_inputs_move_alike_wherever_they_are_used(needed):
 def test_the_size_of_terms(needed):
     dag, nodes, node = needed("=((A1+1000)-1001)*5")
     assert term_sizes(dag, nodes, evaluate(dag, nodes, {"x": np.array([1.0, 2.0])}))[node] == 1002.0
+
+
+def test_values_that_nothing_reads_any_more_are_dropped(needed):
+    dag, nodes, node = needed("=SIN(A1)*EXP(-A1)+LN(A1)/3")
+    x = np.linspace(0.1, 5, 50)
+    found = evaluate(dag, nodes, {"x": x}, RandomRounding(3), keep=[node])
+    assert [*found] == [node]
+    assert (
+        numbers_of(found[node], 50).tobytes()
+        == numbers_of(evaluate(dag, nodes, {"x": x}, RandomRounding(3))[node], 50).tobytes()
+    )
+
+
+def test_arrays_of_constants_are_moved_once_and_numbers_in_each_trial():
+    moved = RandomRounding(1).move(Value.of_numbers(np.linspace(0.1, 0.9, 12).reshape(1, 4, 3)), 50)
+    assert moved.shape == (1, 4, 3)
+    assert RandomRounding(1).move(constant(0.1), 50).shape == (50,)
+
+
+@pytest.mark.parametrize(("most", "closed"), [(10_000, False), (100, False), (80, True)])
+def test_constants_computed_from_large_arrays_count_as_typed(needed, most, closed):
+    """The sum of squares reads 40 cells twice, and the other sum 4."""
+    cells = {f"B{k}": k / 7 for k in range(1, 41)} | {f"C{k}": k / 9 for k in range(1, 5)}
+    dag, _, node = needed("=A1*SUMPRODUCT(B1:B40*B1:B40)+SUM(C1:C4*C1:C4)", **cells)
+    graph = open_constants(dag, [node], most)
+    names = {dag.origins[each].function.name for each in graph.closed}
+    assert names == ({"SUMPRODUCT"} if closed else set())
+    nodes = closure(graph, [node])
+    x = np.linspace(0.1, 5, 50)
+    plain = numbers_of(evaluate(dag, closure(dag, [node]), {"x": x})[node], 50)
+    assert numbers_of(evaluate(graph, nodes, {"x": x})[node], 50).tobytes() == plain.tobytes()

@@ -20,14 +20,52 @@ if TYPE_CHECKING:
     from xlmc.engine.graph.lowering import Lowering
     from xlmc.montecarlo.model.model import CompiledModel
 
-__all__ = ["derivatives"]
+__all__ = ["Movements", "derivatives"]
 
 _PORTION: Final = 1 << 21
 """Derivatives held of one node at once."""
 
 
+class Movements:
+    """By how much cells move with the assumptions, gathered while derivatives are: 3 numbers a trial, not 2 k.
+
+    Args:
+        nodes: cell -> its node.
+
+    Attributes:
+        of_trials: node -> `(n,)`, the sum over assumptions of |derivative × value|; those without derivative count 0.
+        of_assumptions: node -> `(k,)`, the same, summed over trials.
+    """
+
+    def __init__(self, nodes: Mapping[Cell, int]) -> None:
+        self.nodes = dict(nodes)
+        self.of_trials: dict[int, Floats] = {}
+        self.of_assumptions: dict[int, Floats] = {}
+
+    def add(self, node: int, gradient: Floats, points: Floats, start: int, n: int) -> None:
+        """Take up the derivatives of a node in some trials.
+
+        Args:
+            node: of a cell.
+            gradient: `(m, k)`.
+            points: `(m, k)`, what the assumptions are.
+            start: the number of the first of these trials, of n.
+            n: all trials.
+        """
+        with np.errstate(all="ignore"):
+            moved = np.abs(gradient * points)
+            self.of_trials.setdefault(node, np.zeros(n))[start : start + len(moved)] = np.nansum(moved, axis=1)
+            total = np.nansum(moved, axis=0)
+            self.of_assumptions[node] = self.of_assumptions.get(node, 0.0) + total
+
+
 def derivatives(
-    model: CompiledModel, inputs: Mapping[str, ArrayLike], *, order: int = 1, cells: Iterable[Cell] = ()
+    model: CompiledModel,
+    inputs: Mapping[str, ArrayLike],
+    *,
+    order: int = 1,
+    cells: Iterable[Cell] = (),
+    movements: Movements | None = None,
 ) -> Derivatives:
     """First, and second, derivatives of every forecast and of every filter's cell, at the points given.
 
@@ -39,6 +77,7 @@ def derivatives(
         inputs: name of every live assumption -> `(n,)` or a number.
         order: 1, or 2 for second derivatives too; these take k times the time and memory.
         cells: more cells that are wanted, among those that the forecasts and filters need.
+        movements: of cells whose derivatives are not wanted themselves.
 
     Raises:
         SimulationError: an assumption is missing, unknown or frozen, the values are of different lengths, the order is
@@ -53,22 +92,23 @@ def derivatives(
     targets = [*(f.cell for f in model.forecasts), *(f.cell for f in model.filters)]
     nodes |= {cell: lowering.cell(cell) for cell in targets}
     notes = Notes()
+    points = np.column_stack([*draws.values()]) if draws else np.empty((n, 0))
     found = _Found(n, len(draws), order, set(nodes.values()))
     portion = _portion(lowering, len(draws), order)
     for start in range(0, n, portion):
         part = {name: values[start : start + portion] for name, values in draws.items()}
         try:
-            _sweep(lowering, found, part, order, notes, start)
+            _sweep(lowering, found, part, order, notes, start, points, movements)
         except UnequalSizes:
             for trial in range(start, min(start + portion, n)):
                 one = {name: values[trial : trial + 1] for name, values in draws.items()}
-                _sweep(lowering, found, one, order, notes, trial)
+                _sweep(lowering, found, one, order, notes, trial, points, movements)
     by_cell = {cell: found.derivative(cell, node) for cell, node in nodes.items()}
     concerned = np.flatnonzero(np.any([np.isnan(d.gradient).any(axis=1) for d in by_cell.values()], axis=0))
     whose = owners(lowering)
     return Derivatives(
         names=tuple(a.name for a in model.live),
-        points=np.column_stack([*draws.values()]) if draws else np.empty((n, 0)),
+        points=points,
         forecasts={f.name: by_cell[f.cell] for f in model.forecasts},
         filters={f.name: by_cell[f.cell] for f in model.filters},
         cells={cell: by_cell[cell] for cell in more},
@@ -105,17 +145,10 @@ class _Found:
         """Return what a sweep found in the trials from `start` to `stop`."""
         here = slice(start, stop)
         self._values[node][here] = np.where((value.kinds >= TEXT) & (value.kinds != BLANK), np.nan, value.numbers)
-        lost = np.asarray((value.kinds >= ERROR) | (value.kinds == TEXT))
-        columns = list(jet.active)
-        self._first[node][:, here] = np.where(lost, np.nan, 0.0)[None, :, None]
-        if not columns:
-            return
         first, second = self._first[node], self._second.get(node)
-        for kind, part in enumerate((jet.first, jet.error)):
-            if part is not None:
-                first[kind, here][:, columns] = np.broadcast_to(part, (len(columns), stop - start)).T
-        first[1][np.isnan(first[0])] = np.nan
-        if second is None:
+        _spread_out(value, jet, first[:, here])
+        columns = list(jet.active)
+        if second is None or not columns:
             return
         for kind, part in enumerate((jet.second, jet.second_error)):
             if part is not None:
@@ -132,9 +165,33 @@ class _Found:
         )
 
 
+def _spread_out(value: Value, jet: Jet, into: Floats) -> None:
+    """Write first derivatives, and their errors, `(2, n, k)`: NaN where the value is lost, 0 where it does not vary."""
+    lost = np.asarray((value.kinds >= ERROR) | (value.kinds == TEXT))
+    into[:] = np.where(lost, np.nan, 0.0)[None, :, None]
+    if columns := list(jet.active):
+        for kind, part in enumerate((jet.first, jet.error)):
+            if part is not None:
+                into[kind][:, columns] = np.broadcast_to(part, (len(columns), into.shape[1])).T
+        into[1][np.isnan(into[0])] = np.nan
+
+
 def _sweep(
-    lowering: Lowering, found: _Found, draws: Mapping[str, Floats], order: int, notes: Notes, start: int
+    lowering: Lowering,
+    found: _Found,
+    draws: Mapping[str, Floats],
+    order: int,
+    notes: Notes,
+    start: int,
+    points: Floats,
+    movements: Movements | None,
 ) -> None:
     stop = start + next((values.size for values in draws.values()), 1)
-    for node, value, jet in sweep_forward(lowering.dag, found.nodes, draws, order, notes, start):
-        found.add(node, value, jet, start, stop)
+    moving = set() if movements is None else {*movements.nodes.values()}
+    for node, value, jet in sweep_forward(lowering.dag, found.nodes | moving, draws, order, notes, start):
+        if node in found.nodes:
+            found.add(node, value, jet, start, stop)
+        if movements is not None and node in moving:
+            first = np.empty((2, stop - start, points.shape[1]))
+            _spread_out(value, jet, first)
+            movements.add(node, first[0], points[start:stop], start, len(points))

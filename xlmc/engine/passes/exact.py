@@ -15,9 +15,8 @@ import mpmath
 import numpy as np
 from mpmath import mp, mpf
 
-from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select
-from xlmc.engine.passes.random_rounding import formula_of
+from xlmc.engine.passes.random_rounding import Graph, formula_of
 from xlmc.errors import ErrorCode
 from xlmc.excel.functions.fifteen_digits import SNAP_TO_ZERO
 from xlmc.excel.functions.values import ShapeVaries, Value, constant, from_objects
@@ -39,7 +38,7 @@ class Exact:
         unchecked: nodes of functions that are not known here.
     """
 
-    def __init__(self, dag: Dag, nodes: Sequence[int]) -> None:
+    def __init__(self, dag: Graph, nodes: Sequence[int]) -> None:
         self._dag, self._nodes = dag, nodes
         self.unchecked: set[int] = set()
 

@@ -10,7 +10,9 @@ sum that a formula ends with is left out, for these bits are looked for.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from typing import Final
+from dataclasses import dataclass
+from math import prod
+from typing import Final, Protocol
 
 import numpy as np
 
@@ -23,12 +25,15 @@ from xlmc.excel.functions.values import ERROR, LOGICAL, Floats, Value
 
 __all__ = [
     "DOUBLE",
+    "Graph",
+    "OpenedGraph",
     "RandomRounding",
     "closure",
     "evaluate",
     "evaluate_changes",
     "formula_of",
     "numbers_of",
+    "open_constants",
     "term_sizes",
 ]
 
@@ -42,6 +47,55 @@ _ALL_WHOLE: Final = 2.0**52
 
 _SURELY: Final = 1.001
 """This times half a unit of the last bit, added to a number, gives the next double."""
+
+
+class Graph(Protocol):
+    """Nodes, and what computed constants were computed from: a `Dag`, or less of one."""
+
+    @property
+    def nodes(self) -> Sequence[Node]:
+        """What each node is."""
+
+    @property
+    def origins(self) -> Mapping[int, Node]:
+        """Computed constants -> the node that each was computed from."""
+
+
+@dataclass(frozen=True, slots=True)
+class OpenedGraph:
+    """A graph in which constants that were computed from large arrays of constants count as typed.
+
+    Attributes:
+        nodes, origins: see `Graph`.
+        closed: the constants that count as typed.
+    """
+
+    nodes: Sequence[Node]
+    origins: Mapping[int, Node]
+    closed: frozenset[int]
+
+
+def open_constants(dag: Dag, targets: Collection[int], most: int) -> OpenedGraph:
+    """Look into computed constants as far as these are computed from few cells in all.
+
+    Args:
+        dag: the nodes.
+        targets: what is looked at.
+        most: cells that all computed constants read, together. Above it, constants that read the largest arrays count
+            as typed, and what only these are computed from is not looked at.
+    """
+    read = {
+        node: max((prod(dag.sizes[part] or (1,)) for part in uses(origin)), default=1)
+        for node, origin in dag.origins.items()
+    }
+    graph, needed = OpenedGraph(dag.nodes, dag.origins, frozenset()), closure(dag, targets)
+    largest = max((read[node] for node in needed if node in read), default=1)
+    while sum(read[node] for node in needed if node in graph.origins) > most and largest > 1:
+        largest //= 4
+        origins = {node: origin for node, origin in dag.origins.items() if read[node] <= largest}
+        needed = closure(OpenedGraph(dag.nodes, origins, frozenset()), targets)
+        graph = OpenedGraph(dag.nodes, origins, frozenset(node for node in needed if read.get(node, 0) > largest))
+    return graph
 
 
 class RandomRounding:
@@ -58,7 +112,7 @@ class RandomRounding:
         self._next = 0
 
     def move(self, value: Value, n: int, *, whole_too: bool = False) -> Value:
-        """Move numbers up or down; a constant, too, then differs from trial to trial.
+        """Move numbers up or down; a constant, too, then differs from trial to trial, but not an array of constants.
 
         Args:
             value: of numbers; another kind of value is left as it is.
@@ -67,7 +121,7 @@ class RandomRounding:
         """
         if value.kinds.any():
             return value
-        shape = (max(n, value.shape[0]), *value.shape[1:])
+        shape = (n if value.shape == (1,) else value.shape[0], *value.shape[1:])
         size = int(np.prod(shape))
         if self._next + size > _POOL:
             self._next = self._next % 1009  # not where it began the last time
@@ -81,7 +135,7 @@ class RandomRounding:
         return Value(np.where(whole, numbers_, moved) if whole.any() else moved, value.kinds)
 
 
-def closure(dag: Dag, targets: Collection[int]) -> list[int]:
+def closure(dag: Graph, targets: Collection[int]) -> list[int]:
     """Return the nodes that the targets need, constants that were computed and their parts among them, parts first."""
     order: list[int] = []
     seen: set[int] = set()
@@ -97,18 +151,19 @@ def closure(dag: Dag, targets: Collection[int]) -> list[int]:
     return order
 
 
-def formula_of(dag: Dag, node_id: int) -> Node:
+def formula_of(dag: Graph, node_id: int) -> Node:
     """Return the node; for a computed constant, the node that it was computed from."""
     node = dag.nodes[node_id]
     return dag.origins.get(node_id, node) if isinstance(node, Constant) else node
 
 
 def evaluate(
-    dag: Dag,
+    dag: Graph,
     nodes: Sequence[int],
     draws: Mapping[str, Floats],
     rounding: RandomRounding | None = None,
     of_inputs: RandomRounding | None = None,
+    keep: Collection[int] | None = None,
 ) -> dict[int, Value]:
     """Return the values of nodes.
 
@@ -118,7 +173,10 @@ def evaluate(
         draws: of every input, `(n,)` each.
         rounding: moves every result; None for plain evaluation.
         of_inputs: moves the draws, and numbers that were typed in where they are calculated with.
+        keep: the nodes whose values are wanted, so that the others are dropped once they are read; None for all.
     """
+    last = {} if keep is None else {part: node_id for node_id in nodes for part in uses(formula_of(dag, node_id))}
+    wanted = frozenset(keep or ())
     values: dict[int, Value] = {}
     n = next((draw.size for draw in draws.values()), 1)
     typed: dict[int, Value] = {}
@@ -143,11 +201,15 @@ def evaluate(
             )
             moves = isinstance(node, Apply) and _rounds(node) and not isinstance(found, Ragged)
             values[node_id] = rounding.move(found, n) if rounding is not None and moves else found
+        if last:
+            for part in {*uses(node)} - wanted:
+                if last[part] == node_id:
+                    del values[part]
     return values
 
 
 def evaluate_changes(
-    dag: Dag, nodes: Sequence[int], values: Mapping[int, Value], given: Mapping[int, Value]
+    dag: Graph, nodes: Sequence[int], values: Mapping[int, Value], given: Mapping[int, Value]
 ) -> dict[int, Value]:
     """Return the nodes that change when some are given other values: these, and all that depend on them.
 
@@ -169,7 +231,7 @@ def evaluate_changes(
     return found
 
 
-def _find_typed(dag: Dag, nodes: Sequence[int]) -> set[int]:
+def _find_typed(dag: Graph, nodes: Sequence[int]) -> set[int]:
     """Typed numbers that are calculated with, but not π or small whole numbers, which are no measurements."""
     found: set[int] = set()
     for node in nodes:
@@ -197,7 +259,7 @@ def _is_exact(node: Node) -> bool:
 _COUNTS: Final = 100
 
 
-def term_sizes(dag: Dag, nodes: Sequence[int], values: Mapping[int, Value]) -> dict[int, float]:
+def term_sizes(dag: Graph, nodes: Sequence[int], values: Mapping[int, Value]) -> dict[int, float]:
     """Node -> the largest number that was added or subtracted on the way to it, in any trial.
 
     What is smaller than that by many digits, and should be 0, is dust.

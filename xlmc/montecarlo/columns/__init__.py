@@ -5,10 +5,11 @@ column is an ordinary array to whoever reads it. Parquet is a format to hand res
 """
 
 from xlmc.montecarlo.columns.column_store import Columns, ColumnStore, Folder, free_disk, on_disk, release
-from xlmc.montecarlo.columns.passes import PART, ascending, numbers, pairwise_sum, parts, picked
+from xlmc.montecarlo.columns.passes import PART, RUN, ascending, numbers, pairwise_sum, parts, passed, picked
 
 __all__ = [
     "PART",
+    "RUN",
     "ColumnStore",
     "Columns",
     "Folder",
@@ -18,6 +19,7 @@ __all__ = [
     "on_disk",
     "pairwise_sum",
     "parts",
+    "passed",
     "picked",
     "release",
 ]

@@ -17,10 +17,13 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo.columns.column_store import Folder, on_disk, release
 
-__all__ = ["PART", "ascending", "numbers", "pairwise_sum", "parts", "picked"]
+__all__ = ["PART", "RUN", "ascending", "numbers", "pairwise_sum", "parts", "passed", "picked"]
 
 PART = 65_536
 """Values looked at together: a few arrays of so many fit in the processor's cache."""
+
+RUN = 1 << 22
+"""Values sorted together: a column of no more is short, and may be in memory as a whole."""
 
 _PICKED = 512
 """Values picked before the pages that they lie on are given back: each may be on a page of its own."""
@@ -30,9 +33,19 @@ _PICKED_FROM = _PICKED * mmap.PAGESIZE
 
 
 def parts(values: NDArray[Any], size: int = PART) -> Iterator[NDArray[Any]]:
-    """Yield the column in order, `size` values at a time; take what you keep before the next part."""
+    """Yield the column in order, `size` values at a time; take what you keep before the next part.
+
+    The memory of a column on disk is given back on the way, that of a short one at the end.
+    """
     for start in range(0, values.size, size):
         yield values[start : start + size]
+        passed(values)
+    release(values)
+
+
+def passed(values: NDArray[Any]) -> None:
+    """Give back the memory of what was read of a long column; that of a short one waits for `release`."""
+    if values.size > RUN:
         release(values)
 
 
@@ -63,8 +76,9 @@ def picked(values: NDArray[Any], indices: NDArray[np.intp]) -> NDArray[Any]:
         release(values)
         return found
     found = np.empty(indices.size, values.dtype)
-    for start in range(0, indices.size, _PICKED):
-        here = slice(start, start + _PICKED)
+    together = _PICKED if values.size > RUN else max(indices.size, 1)
+    for start in range(0, indices.size, together):
+        here = slice(start, start + together)
         found[here] = values[indices[here]]
         release(values)
     return found
@@ -80,10 +94,6 @@ def numbers(values: NDArray[np.float64]) -> NDArray[np.float64]:
     for part in parts(values):
         folder.append("numbers", [part[~np.isnan(part)]])
     return folder.array("numbers", values.dtype)
-
-
-RUN = 1 << 22
-"""Values sorted together."""
 
 
 def ascending(values: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -17,11 +17,12 @@ as well, is not in it.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.montecarlo.columns import PART, release
+from xlmc.montecarlo.columns import PART, passed, release
 from xlmc.montecarlo.statistics.estimate import Estimate, with_error
 from xlmc.montecarlo.statistics.sample import Sample, Values
 
@@ -51,6 +52,7 @@ def mode(
         return Estimate(np.nan)
     value = half_sample_mode(sample)
     sizes_and_modes = [(group.n, half_sample_mode(group)) for group in _deal(sample)]
+    release(sample.x)
     if len(sizes_and_modes) < 2:
         return Estimate(value, n=sample.n)
     sizes, modes = np.array(sizes_and_modes).T
@@ -80,7 +82,7 @@ def _are_counts(x: Floats) -> bool:
     for start in range(1, x.size, PART):
         stop = min(start + PART, x.size)
         different += int(np.count_nonzero(x[start:stop] != x[start - 1 : stop - 1]))
-        release(x)
+        passed(x)
         if 2 * different > x.size:
             return False
     return 2 * different <= x.size
@@ -104,7 +106,7 @@ def _runs(x: Floats, w: Floats | None) -> Iterator[tuple[Floats, Floats]]:
     for start in range(0, x.size, PART):
         here = np.concatenate([last, x[start : start + PART]])
         amounts = np.concatenate([carried, np.ones(here.size - last.size) if w is None else w[start : start + PART]])
-        release(x)
+        passed(x)
         starts = np.flatnonzero(np.concatenate([[True], here[1:] != here[:-1]]))
         values, sums = here[starts], np.add.reduceat(amounts, starts)
         yield values[:-1], sums[:-1]
@@ -123,7 +125,7 @@ def _densest_half(x: Floats) -> slice:
         for start in range(0, x.size - size + 1, PART):
             stop = min(start + PART, x.size - size + 1)
             yield x[start + size - 1 : stop + size - 1] - x[start:stop]
-            release(x)
+            passed(x)
 
     start = _find_smallest_in_parts(widths)
     return slice(start, start + size)
@@ -178,7 +180,14 @@ def _deal(sample: Sample) -> Iterator[Sample]:
     groups = min(GROUPS, sample.n // LEAST_IN_A_GROUP)
     if groups < 2:
         return
-    size = min(sample.n // groups, MOST_IN_A_GROUP)
+    yield from (sample.part(ranks) for ranks in _dealt(sample.n, groups))
+
+
+@lru_cache(maxsize=2)
+def _dealt(n: int, groups: int) -> NDArray[np.intp]:
+    """Deal n ranks to groups, ascending in each, `(groups, size)`: the same for all forecasts of a run."""
+    size = min(n // groups, MOST_IN_A_GROUP)
     shuffle = np.random.Generator(np.random.PCG64DXSM(SHUFFLE_SEED))
-    dealt = np.sort(shuffle.choice(sample.n, (groups, size), replace=False), axis=1)
-    yield from (sample.part(ranks) for ranks in dealt)
+    dealt = np.sort(shuffle.choice(n, (groups, size), replace=False), axis=1)
+    dealt.flags.writeable = False
+    return dealt

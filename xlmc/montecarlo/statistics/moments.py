@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.montecarlo.columns import PART, on_disk, pairwise_sum, release
+from xlmc.montecarlo.columns import PART, RUN, on_disk, pairwise_sum, passed, release
 from xlmc.montecarlo.interruption import checkpoint
 
 __all__ = ["Moments", "moments_of"]
@@ -72,7 +72,7 @@ def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, grou
     shift = _average(lambda here: x[here] - pivot, x.size, w)
 
     def about_the_mean(here: slice) -> Floats:
-        release(x)
+        passed(x)
         return np.asarray(x[here] - pivot - shift)
 
     centred = _keep_if_in_memory(about_the_mean, x)
@@ -83,7 +83,8 @@ def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, grou
     root = _average(lambda here: np.square(centred(here) / largest), x.size, w) ** 0.5
 
     z = _keep_if_in_memory(lambda here: centred(here) / largest / root, x)
-    means = np.sum([_sums(powers, share) for powers, share, _ in _blocks(z, x.size, w, None)], axis=0)
+    release(x)
+    means = np.sum([*_sums(z, x.size, w)], axis=0)
     totals = None if group is None else _totals(z, x.size, w, group, groups, means)
     pulls = _pulls(z, x.size, w, means) if totals is None else iter([totals])
     covariance, noise = _variation(pulls, units)
@@ -91,15 +92,29 @@ def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, grou
     return Moments(pivot + shift, largest * root, *shape, covariance, noise, float(means[4]), float(means[5]), totals)
 
 
-def _sums(powers: Floats, share: Floats | float) -> Floats:
-    """Return the (6,) sums of z to z⁶, each trial with its share, from (4, b) powers up to the fourth."""
-    shared = powers * share
-    return np.concatenate([shared.sum(axis=1), (shared[2] * powers[1:3]).sum(axis=1)])
+def _sums(z: Slices, n: int, w: Floats | None) -> Iterator[Floats]:
+    """Yield, block by block, the (6,) sums of z to z⁶, each trial with its share."""
+    work = _Work(n)
+    for powers, share, _ in _blocks(z, n, w, None):
+        shared = np.multiply(powers, share, out=work.for_block(powers.shape[1]))
+        first = shared.sum(axis=1)
+        yield np.concatenate([first, np.multiply(shared[2], powers[1:3], out=shared[:2]).sum(axis=1)])
+
+
+class _Work:
+    """Memory for (4, b) numbers of one block after another: fresh memory costs more than what is computed in it."""
+
+    def __init__(self, n: int) -> None:
+        self._memory = np.empty(4 * min(n, PART))
+
+    def for_block(self, b: int) -> Floats:
+        """Return the memory for a block of b trials; what was written there for another is gone."""
+        return self._memory[: 4 * b].reshape(4, b)
 
 
 def _keep_if_in_memory(compute: Slices, x: Floats) -> Slices:
-    """Compute all values once if `x` is in memory; else each part whenever it is needed."""
-    return compute if on_disk(x) else compute(slice(0, x.size)).__getitem__
+    """Compute all values once if `x` is in memory, or short; else each part whenever it is needed."""
+    return compute if on_disk(x) and x.size > RUN else compute(slice(0, x.size)).__getitem__
 
 
 def _slices(n: int) -> Iterator[slice]:
@@ -115,20 +130,29 @@ def _average(values: Slices, n: int, w: Floats | None) -> float:
 def _blocks(
     z: Slices, n: int, w: Floats | None, group: NDArray[np.intp] | None
 ) -> Iterator[tuple[Floats, Floats | float, NDArray[np.intp] | None]]:
-    """Yield, block by block, (4, b) powers of z, the share of each trial in the whole, and its replicate."""
+    """Yield, block by block, (4, b) powers of z, the share of each trial in the whole, and its replicate.
+
+    The next block is written over the powers.
+    """
+    work = _Work(n)
     for here in _slices(n):
-        block = z(here)
-        square = block * block
+        powers = work.for_block(here.stop - here.start)
+        powers[0] = z(here)
+        np.multiply(powers[0], powers[0], out=powers[1])
+        np.multiply(powers[1], powers[0], out=powers[2])
+        np.multiply(powers[1], powers[1], out=powers[3])
         yield (
-            np.stack([block, square, square * block, square * square]),
+            powers,
             1.0 / n if w is None else w[here],
             None if group is None else group[here],
         )
 
 
 def _pulls(z: Slices, n: int, w: Floats | None, means: Floats) -> Iterator[Floats]:
-    """Yield, block by block, (4, b) how far each trial pulls the means of z, z², z³, z⁴."""
-    return ((powers - means[:4, None]) * share for powers, share, _ in _blocks(z, n, w, None))
+    """Yield, block by block, (4, b) how far each trial pulls the means of z, z², z³, z⁴; see `_blocks`."""
+    for powers, share, _ in _blocks(z, n, w, None):
+        np.subtract(powers, means[:4, None], out=powers)
+        yield np.multiply(powers, share, out=powers)
 
 
 def _totals(z: Slices, n: int, w: Floats | None, group: NDArray[np.intp], groups: int, means: Floats) -> Floats:

@@ -10,11 +10,15 @@ from xlmc.errors import capitalised
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.stability import CellDigits, Finding, Stability
+    from xlmc.excel.address import Cell
     from xlmc.outputs.document.parts import Table
     from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["cells", "count", "finding_heading", "finding_sentences", "sentences", "stability_report"]
 
+
+_LISTED = 20
+"""Cells of a sentence that names cells."""
 
 _LEVELS = {"WRONG": "Wrong", "DOUBTFUL": "Doubtful", "NOTE": "Note"}
 
@@ -114,8 +118,12 @@ def sentences(found: Stability) -> Iterator[str]:
         f"{found.run.settings.seed}, among them the base "
         f"case and the ends of all ranges; {count_text(found.recomputed)} were computed again with 50 digits."
     )
+    cells: dict[str, list[Cell]] = {}
     for cell, functions in found.unchecked:
-        yield f"Not checked with 50 digits: {', '.join(functions)} in {cell}."
+        cells.setdefault(", ".join(functions), []).append(cell)
+    for functions, where in cells.items():
+        more = f" and {count_text(len(where) - _LISTED)} more cells" if len(where) > _LISTED else ""
+        yield f"Not checked with 50 digits: {functions} in {', '.join(map(str, where[:_LISTED]))}{more}."
 
 
 def _as_json(found: Stability) -> dict[str, object]:

@@ -16,8 +16,8 @@ ROOT = Path(__file__).resolve().parents[4]
 def few_points():
     """A quarter of the points are looked at: enough for digits that are lost in most of them."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("xlmc.analysis.studies.stability.case._PRIOR", 512)
-        patch.setattr("xlmc.analysis.studies.stability.case._ACCEPTED", 256)
+        patch.setattr("xlmc.analysis.studies.stability.extent._PRIOR", 512)
+        patch.setattr("xlmc.analysis.studies.stability.extent._ACCEPTED", 256)
         yield
 
 

@@ -8,6 +8,7 @@ from simulated import simulated
 
 from xlmc.analysis.studies.stability import Level, stability
 from xlmc.analysis.studies.stability.case import Case
+from xlmc.analysis.studies.stability.extent import Extent
 
 TRIALS = 10_000
 
@@ -89,7 +90,7 @@ def test_the_template_loses_nothing(case_study):
     assert {one.level for one in found.findings} <= {Level.NOTE}
     assert any(one.kind == "tail" and one.name == "Restitution, tangential" for one in found.findings)
     digits = {cell.cell: cell for cell in found.cells}
-    case = Case(case_study, found.run)
+    case = Case(Extent(case_study), found.run)
     for forecast in case_study.forecasts:
         assert digits[forecast.cell].rounding < 1e-12
         node = case.node[forecast.cell]

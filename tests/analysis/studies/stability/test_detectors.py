@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
+from xlmc.analysis.studies.derivatives import Movements, derivatives
 from xlmc.analysis.studies.stability import Level, stability
+from xlmc.errors import FormulaError
 from xlmc.excel.workbook.workbook import CellContent, Formula
 
 UNIFORM = {"x": {"cell": "A1", "low": 1, "high": 2}, "y": {"cell": "A2", "low": 1, "high": 2}}
@@ -297,14 +300,47 @@ def test_functions_that_are_not_recomputed_are_named(look):
 
 def test_arrays_whose_size_varies(look, monkeypatch):
     """Such trials are worked out one by one: a few are enough here."""
-    monkeypatch.setattr("xlmc.analysis.studies.stability.case._PRIOR", 32)
-    monkeypatch.setattr("xlmc.analysis.studies.stability.case._ACCEPTED", 16)
+    monkeypatch.setattr("xlmc.analysis.studies.stability.extent._PRIOR", 32)
+    monkeypatch.setattr("xlmc.analysis.studies.stability.extent._ACCEPTED", 16)
     monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.BLOCK", 512)
     dynamic = CellContent(None, Formula("SUM(FILTER(C1:C3,C1:C3>A1))+1E16-1E16", 1, 2, dynamic=True))
     found = look({"B1": dynamic, "C1": 1.25, "C2": "=A1*1.1", "C3": "=A1/3+A2"}, trials=200)
     assert only(found, "cancellation").level is Level.WRONG
     assert found.run.warnings
     assert found.unchecked
+
+
+def test_sums_of_large_arrays_of_constants_count_as_typed_and_are_named(look, monkeypatch):
+    monkeypatch.setattr("xlmc.analysis.studies.stability.extent._MOST_OPENED", 1_000)
+    cells = {f"C{k}": k / 7 for k in range(1, 1001)}
+    found = look(cells | {"D1": "=SUMPRODUCT(C1:C1000*C1:C1000)*2", "B1": "=(A1+D1+1E16)-1E16"})
+    assert only(found, "cancellation").level is Level.WRONG
+    assert [(str(cell), functions) for cell, functions in found.unchecked] == [("S!D1", ("SUMPRODUCT",))]
+
+
+def test_a_book_whose_arrays_do_not_fit_into_memory_is_refused_before_the_run(look, monkeypatch):
+    monkeypatch.setattr("xlmc.analysis.studies.stability.extent._MOST_BYTES", 10**6)
+    monkeypatch.setattr("xlmc.analysis.studies.stability.find.simulate", None)
+    cells = {f"C{k}": k / 7 for k in range(1, 401)}
+    with pytest.raises(FormulaError, match=r"S!B1: Stability keeps .* takes 0.0 GB: xlmc takes up to 0.0 GB") as error:
+        look(cells | {"B1": "=SUMPRODUCT(SQRT(C1:C400*A1))"})
+    assert "this one first" in str(error.value)
+
+
+def test_cells_move_with_assumptions_as_their_derivatives_say(book):
+    cells = {"A1": 1.5, "A2": 1.5, "C1": "=A1^2", "B1": '=IF(A2>1.9,"text",C1*A2)'}
+    model = book(cells, UNIFORM, {"f": "B1"})
+    rng = np.random.default_rng(1)
+    draws = {"x": rng.uniform(1, 2, 500), "y": rng.uniform(1, 2, 500)}
+    needed = [cell for cell in model.lowering.graph.formulas if cell not in model.lowering.inputs]
+    movements = Movements({cell: model.lowering.cell(cell) for cell in needed})
+    derivatives(model, draws, movements=movements)
+    found = derivatives(model, draws, cells=needed)
+    for cell in needed:
+        moved = np.abs(found.cells[cell].gradient * found.points)
+        node = movements.nodes[cell]
+        assert movements.of_trials[node].tobytes() == np.nansum(moved, axis=1).tobytes()
+        assert movements.of_assumptions[node] == pytest.approx(np.nansum(moved, axis=0), rel=1e-13)
 
 
 def test_a_book_without_assumptions(book):

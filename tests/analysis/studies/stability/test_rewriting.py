@@ -8,6 +8,7 @@ import pytest
 from simulated import simulated
 
 from xlmc.analysis.studies.stability.case import Case
+from xlmc.analysis.studies.stability.extent import Extent
 from xlmc.analysis.studies.stability.formula_trees import Trees, factors
 from xlmc.analysis.studies.stability.momentum import spin
 from xlmc.analysis.studies.stability.rewriting import (
@@ -32,7 +33,7 @@ ONE = {"a": {"cell": "A5", "low": 181, "high": 191}, "b": {"cell": "A7", "low": 
 def case(book):
     def make(formula, filters=None, **cells):
         model = book(CELLS | {"Z1": formula} | cells, ONE, {"f": "Z1"}, filters or {}, names=NAMES)
-        return Case(model, simulated(model, trials=200, seed=1)), parse_address("Z1", "S")
+        return Case(Extent(model), simulated(model, trials=200, seed=1)), parse_address("Z1", "S")
 
     return make
 

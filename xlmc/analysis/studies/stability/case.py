@@ -7,15 +7,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from functools import cached_property
-from typing import Any, Final
+from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.analysis.studies.derivatives import derivatives
+from xlmc.analysis.studies.derivatives import Movements, derivatives
 from xlmc.analysis.studies.stability.digit_findings import Where
+from xlmc.analysis.studies.stability.extent import Extent
 from xlmc.analysis.studies.stability.formula_trees import Trees
-from xlmc.engine.engine import Target
 from xlmc.engine.graph.nodes import Apply, Input, uses
 from xlmc.engine.passes.derivatives import Derivatives
 from xlmc.engine.passes.exact import Exact, as_double
@@ -31,8 +31,6 @@ from xlmc.engine.passes.random_rounding import (
 from xlmc.excel.address import Cell
 from xlmc.excel.formula.graph import reached
 from xlmc.excel.functions.values import Value
-from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.montecarlo.model.needed import filter_condition
 from xlmc.montecarlo.simulation.simulation import RunResult
 
 __all__ = ["RELATIONS", "Case"]
@@ -45,39 +43,28 @@ _REPLICAS: Final = 6
 
 RELATIONS: Final = frozenset({"<", "<=", ">", ">=", "=", "<>"})
 
-_PRIOR: Final = 2048
-_ACCEPTED: Final = 1024
-_FEWEST_OF_EITHER: Final = 64
-"""Trials as drawn, and accepted ones; and how few there may be of each in a large book."""
-
-_BYTES: Final = 1 << 29
-"""Bytes for the values of all nodes, and the derivatives of all cells: they limit the number of trials."""
-
 
 class Case:
     """What is known of a model from a run of it.
 
     Args:
-        model: the workbook.
+        extent: what is looked at of a model.
         run: accepted trials and draws of it.
         seed: of the random rounding.
     """
 
-    def __init__(self, model: CompiledModel, run: RunResult, seed: int = 0) -> None:
+    def __init__(self, extent: Extent, run: RunResult, seed: int = 0) -> None:
+        model = extent.model
         self.model, self.run, self._seed = model, run, seed
         self.trees = Trees(model)
-        self.lowering, self.dag = model.lowering, model.lowering.dag
-        self.cells = [cell for cell in self.lowering.graph.formulas if cell not in self.lowering.inputs]
-        targets = [*(f.cell for f in model.forecasts), *(f.cell for f in model.filters)]
-        self.node = {cell: self.lowering.cell(cell) for cell in (*self.cells, *targets)}
+        self.lowering, self.dag = model.lowering, extent.graph
+        self.cells, self.node, self.conditions = extent.cells, extent.node, extent.conditions
+        self.nodes, self._prior, self._accepted = extent.nodes, extent.prior, extent.accepted
         self.names = [a.name for a in model.live]
-        self.conditions = [
-            self.lowering.target(Target(filter_condition(f, certain=True), f.cell)) for f in model.filters
-        ]
-        self.nodes = closure(self.dag, [*self.node.values(), *self.conditions])
         self._exact = Exact(self.dag, self.nodes)
-        self._known: dict[int, dict[int, Any]] = {}
+        self._known: dict[int, dict[int, float]] = {}
         self._inherent: dict[Cell, Floats] = {}
+        self.movements = Movements({cell: self.node[cell] for cell in self.cells})
 
     @cached_property
     def draws(self) -> dict[str, Floats]:
@@ -85,17 +72,11 @@ class Case:
         if not self.names:
             return {}
         special = self._special()
-        prior = np.column_stack([self.run.prior[a.name][: self._share_of(_PRIOR)] for a in self.model.live])
-        accepted = np.column_stack([self.run.inputs[a.name][: self._share_of(_ACCEPTED)] for a in self.model.live])
+        prior = np.column_stack([self.run.prior[a.name][: self._prior] for a in self.model.live])
+        accepted = np.column_stack([self.run.inputs[a.name][: self._accepted] for a in self.model.live])
         rows = np.concatenate([special, prior, accepted])
         rows = rows[np.isfinite(rows).all(axis=1)]
         return {name: np.ascontiguousarray(column) for name, column in zip(self.names, rows.T, strict=True)}
-
-    def _share_of(self, trials: int) -> int:
-        """Limit a number of trials to what memory allows."""
-        each = 24 * len(self.nodes) + 8 * len(self.cells) * (2 * len(self.names) + 1)
-        share = _BYTES / (each * (_PRIOR + _ACCEPTED))
-        return trials if share >= 1 else max(_FEWEST_OF_EITHER, int(share * trials))
 
     def _special(self) -> Floats:
         """Return the base case, and each assumption at either end of its range with the others at their base."""
@@ -119,7 +100,7 @@ class Case:
     @cached_property
     def first_accepted(self) -> int:
         """The index of the first accepted trial; the trials before it are of all that were drawn."""
-        stored = min(self.run.kept_inputs, self.run.accepted, self._share_of(_ACCEPTED))
+        stored = min(self.run.kept_inputs, self.run.accepted, self._accepted)
         return self.n - stored if self.names else self.n
 
     @property
@@ -140,8 +121,9 @@ class Case:
         """Return the root mean square of what differs in evaluations that move something."""
         squares: dict[int, Floats] = {}
         for replica in range(_REPLICAS):
-            found = evaluate(self.dag, self.nodes, self.draws, **how(replica))
-            for node in {*self.node.values()}:
+            wanted = {*self.node.values()}
+            found = evaluate(self.dag, self.nodes, self.draws, keep=wanted, **how(replica))
+            for node in wanted:
                 off = numbers_of(found[node], self.n) - self.number(node)
                 with np.errstate(over="ignore"):
                     squares[node] = squares.get(node, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2
@@ -182,8 +164,13 @@ class Case:
 
     @cached_property
     def derivatives(self) -> Derivatives:
-        """The derivatives of every needed cell."""
-        return derivatives(self.model, self.draws, cells=self.cells)
+        """The derivatives of forecasts and filters; `movements` are gathered with them."""
+        return derivatives(self.model, self.draws, movements=self.movements)
+
+    def moved(self, cell: Cell) -> tuple[Floats, Floats]:
+        """Return by how much a needed cell moves with all assumptions, `(n,)`, and with each in all trials, `(k,)`."""
+        assert self.derivatives
+        return self.movements.of_trials[self.node[cell]], self.movements.of_assumptions[self.node[cell]]
 
     @cached_property
     def of_inputs(self) -> dict[int, Floats]:
@@ -201,10 +188,7 @@ class Case:
         where unknown.
         """
         if cell not in self._inherent:
-            gradient = self.derivatives.cells[cell].gradient
-            with np.errstate(over="ignore"):
-                moved: Floats = np.nansum(np.abs(gradient * self.derivatives.points), axis=1)
-            node = self.node[cell]
+            moved, node = self.moved(cell)[0], self.node[cell]
             self._inherent[cell] = np.fmax(DOUBLE * (moved + np.abs(self.number(node))), self.of_inputs[node])
         return self._inherent[cell]
 
@@ -220,15 +204,12 @@ class Case:
             size = abs(float(middle))
         return size or 1.0
 
-    def exact(self, node: int, trial: int) -> Any:
-        """Return a node's value in a trial with 50 digits."""
-        if trial not in self._known:
-            self._known[trial] = self._exact.trial({key: float(draws[trial]) for key, draws in self.draws.items()})
-        return self._known[trial][node]
-
     def exact_number(self, node: int, trial: int) -> float:
-        """Return the same as a double; NaN where it is no number."""
-        return as_double(self.exact(node, trial))
+        """Return a node's value in a trial with 50 digits, as a double; NaN where it is no number."""
+        if trial not in self._known:
+            found = self._exact.trial({key: float(draws[trial]) for key, draws in self.draws.items()})
+            self._known[trial] = {one: as_double(value) for one, value in found.items()}
+        return self._known[trial][node]
 
     @property
     def recomputed(self) -> int:
@@ -237,7 +218,7 @@ class Case:
     @property
     def unchecked(self) -> set[int]:
         """The nodes of functions that were not computed with 50 digits."""
-        return self._exact.unchecked
+        return self._exact.unchecked | self.dag.closed
 
     def where(self, trials: Bools, node: int, most: int = 2) -> tuple[Where, ...]:
         """Return the assumptions whose ranges tell the trials from others: those that they take up least of.

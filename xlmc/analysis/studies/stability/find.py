@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING, Final
 
@@ -16,6 +17,7 @@ from xlmc.analysis.studies.stability.detectors import (
 )
 from xlmc.analysis.studies.stability.digit_findings import Finding, Level, Stability
 from xlmc.analysis.studies.stability.edges import domain_edges
+from xlmc.analysis.studies.stability.extent import Extent
 from xlmc.analysis.studies.stability.quadrant import lost_quadrants
 from xlmc.analysis.studies.stability.repeated_steps import as_one
 from xlmc.analysis.studies.stability.rounding_errors import cell_digits, lost_digits
@@ -68,14 +70,16 @@ def stability(
 
     Raises:
         SimulationError: an argument is out of its range.
+        FormulaError: the arrays of the workbook are too large to be looked at.
     """
     if model.definitions.python:
         hint = "Write the model as formulas of a workbook, which can be computed again with 50 digits"
         raise SimulationError("A function of Python has no formulas to look through", where=model.path, hint=hint)
     tell = tell or (lambda _: None)
+    extent = Extent(model)
     tell("a run")
     run: RunResult = simulate(model, trials=trials, seed=seed, jobs=jobs)
-    case = Case(model, run, run.settings.seed)
+    case = Case(extent, run, run.settings.seed)
     found: list[Finding] = []
     for name, detector in _DETECTORS.items():
         tell(name)
@@ -102,10 +106,11 @@ def _first_causes(case: Case, findings: Iterable[Finding]) -> list[Finding]:
 
 def _unchecked_functions(case: Case) -> tuple[tuple[Cell, tuple[str, ...]], ...]:
     """Return the cells that hold functions which were not computed with 50 digits."""
-    whose = owners(case.lowering)
+    dag, whose = case.lowering.dag, owners(case.lowering)
+    whose |= {node: dag.hosts[at] for node in case.dag.closed if (at := bisect_right(dag.ends, node)) < len(dag.hosts)}
     found: dict[Cell, list[str]] = {}
     for node in sorted(case.unchecked):
-        formula = case.dag.nodes[node]
+        formula = dag.origins.get(node, dag.nodes[node])
         if isinstance(formula, Apply) and node in whose:
             names = found.setdefault(whose[node], [])
             if formula.function.name not in names:

@@ -338,11 +338,9 @@ def cell_digits(case: Case) -> Iterator[CellDigits]:
         values = case.number(case.node[cell])
         if not np.isfinite(values).any():
             continue
-        one = case.derivatives.cells[cell]
+        moved, total = case.moved(cell)
         with np.errstate(all="ignore"):
-            moved = np.abs(one.gradient * case.derivatives.points)
-            amplified = np.nansum(moved, axis=1) / np.maximum(np.abs(values), case.scale(cell) * _LEAST)
-            total = np.nansum(moved, axis=0)
+            amplified = moved / np.maximum(np.abs(values), case.scale(cell) * _LEAST)
         amplified = amplified[np.isfinite(amplified)]
         through = case.derivatives.names[int(total.argmax())] if total.size and total.any() else ""
         is_zero = _is_zero(case, cell, losses[cell])

@@ -90,6 +90,7 @@ __all__ = [
     "seek",
     "sensitivities",
     "stability",
+    "stress",
     "uncertainty",
     "verify",
 ]
@@ -130,6 +131,7 @@ _MODULES = {
     "seek": "api",
     "sensitivities": "api",
     "stability": "api",
+    "stress": "api",
     "uncertainty": "api",
     "verify": "api",
 }

@@ -41,6 +41,7 @@ STUDIES = {
     "screen": (lambda model: xlmc.screen(model, trials=2000), "Every assumption is needed"),
     "seek": (lambda model: xlmc.seek(model.path, "F!B2", 50, "D!C5", low=0, high=100), "83.33"),
     "stability": (lambda model: xlmc.stability(model, trials=2000), "Can the digits be trusted?"),
+    "stress": (lambda model: xlmc.stress(model, trials=2000), "Profit moves most with Demand"),
     "uncertainty": (lambda model: xlmc.uncertainty(model, outer=50, inner=100), "Profit"),
 }
 

@@ -200,6 +200,7 @@ def test_the_file_is_never_replaced(book, tmp_path):
 STUDIES = {
     "seek": ("--cell", "Model!B2", "--to", 50, "--by", "Model!B1"),
     "stability": ("-n", 200),
+    "stress": ("-n", 200),
     "screen": ("-n", 200),
     "methods": ("-n", 2_000),
     "verify": (),

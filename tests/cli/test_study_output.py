@@ -36,6 +36,7 @@ OPTIONS = {
     "screen": TRIALS,
     "compare": TRIALS,
     "stability": TRIALS,
+    "stress": TRIALS,
     "uncertainty": ("--uncertain", "a", "--outer", "40", "--inner", "50"),
 }
 
@@ -50,6 +51,7 @@ SAYS = {
     "screen": "P(> 1.5)",
     "compare": "P(> 1.5), %",
     "stability": "What cells amplify and lose",
+    "stress": "Inputs where Speed is above P90",
     "uncertainty": "The 95th percentile of Speed is between",
 }
 NO_RUN = ("compare", "uncertainty")

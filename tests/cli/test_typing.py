@@ -117,6 +117,7 @@ COMMANDS = [
     "optimise",
     "methods",
     "stability",
+    "stress",
     "uncertainty",
     "help",
     "completion",

@@ -82,6 +82,7 @@ COMMANDS = {
         "--uncertain",
         "Cost in,Start,Share",
     ],
+    "stress": ["stress", "{filtered}", "-n", "2000"],
     "seek": ["seek", "{filtered}", "--cell", "Model!B11", "--to", "250000", "--by", "Model!B1"],
     "fit": ["fit", "{plain}!Model!H1:H40"],
 }

@@ -8,7 +8,18 @@ from __future__ import annotations
 from xlmc.analysis.studies.shown import Shown
 from xlmc.api.books import check, convert, replay, seek, verify
 from xlmc.api.models import Model, Simulation, load, model, open_run
-from xlmc.api.studies import compare, decide, fit, methods, optimise, screen, sensitivities, stability, uncertainty
+from xlmc.api.studies import (
+    compare,
+    decide,
+    fit,
+    methods,
+    optimise,
+    screen,
+    sensitivities,
+    stability,
+    stress,
+    uncertainty,
+)
 from xlmc.outputs.studies import StudyDocuments
 
 __all__ = [
@@ -29,6 +40,7 @@ __all__ = [
     "seek",
     "sensitivities",
     "stability",
+    "stress",
     "uncertainty",
     "verify",
 ]

@@ -19,9 +19,21 @@ if TYPE_CHECKING:
     from xlmc.analysis.studies.screening import ScreenArguments, Screening
     from xlmc.analysis.studies.sensitivity import Sensitivities
     from xlmc.analysis.studies.stability import Stability
+    from xlmc.analysis.studies.stress import StressArguments, Stressed
     from xlmc.analysis.studies.uncertainty import TwoLoops, UncertaintyArguments
 
-__all__ = ["compare", "decide", "fit", "methods", "optimise", "screen", "sensitivities", "stability", "uncertainty"]
+__all__ = [
+    "compare",
+    "decide",
+    "fit",
+    "methods",
+    "optimise",
+    "screen",
+    "sensitivities",
+    "stability",
+    "stress",
+    "uncertainty",
+]
 
 
 def sensitivities(
@@ -194,6 +206,24 @@ def optimise(model: Model, **options: Unpack[OptimiseArguments]) -> Optimised:
     from xlmc.analysis.studies.optimising import optimise
 
     return optimise(model._compiled, **options)
+
+
+def stress(model: Model, **options: Unpack[StressArguments]) -> Stressed:
+    """Find the answers where each assumption in turn lies in its tails, and the inputs that distinguish some answers.
+
+    The model and its workbook stay as they are. The trials are plain Monte Carlo, whatever its settings say.
+
+    Args:
+        model: of a workbook.
+        options: `share`, `assumptions`, `forecasts`, `scenarios`, `trials`, `seed`, `engine`, `jobs` and `tell`, which
+            `xlmc.analysis.studies.stress.stress` describes.
+
+    Raises:
+        SimulationError: an argument is out of its range, no name fits, nothing is drawn, or few trials are accepted.
+    """
+    from xlmc.analysis.studies.stress import stress
+
+    return stress(model._compiled, **options)
 
 
 def uncertainty(model: Model, **options: Unpack[UncertaintyArguments]) -> TwoLoops:

@@ -1,6 +1,6 @@
 """The command line: `xlmc new`, `xlmc prepare`, `xlmc check`, `xlmc fit`, `xlmc verify`, `xlmc calculate`,
 `xlmc simulate`, `xlmc open`, `xlmc report`, `xlmc replay`, `xlmc compare`, `xlmc screen`, `xlmc methods`,
-`xlmc stability`, `xlmc uncertainty`, `xlmc seek`, `xlmc decide`, `xlmc optimise`.
+`xlmc stability`, `xlmc stress`, `xlmc uncertainty`, `xlmc seek`, `xlmc decide`, `xlmc optimise`.
 
 Exit codes: 0 done; 1 the run finished but its answer must not be used as it is; 2 bad input, with the cell and what
 to do; 130 interrupted by Ctrl-C; 143 ended by SIGTERM. Modules here import what costs time inside their functions.
@@ -104,6 +104,7 @@ _COMMANDS: Final = {
     "optimise": "optimise.optimise",
     "methods": "methods.methods",
     "stability": "stability.stability",
+    "stress": "stress.stress",
     "uncertainty": "uncertainty.uncertainty",
     "help": "",
     "completion": "completion.completion",

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from xlmc.analysis.studies.scenario_answers import ForecastAnswer, ScenarioAnswers
     from xlmc.montecarlo.statistics import Estimate
 
-__all__ = ["SCENARIO_HEADS", "answer_heads", "answer_rows", "scenario_rows"]
+__all__ = ["SCENARIO_HEADS", "answer_heads", "answer_rows", "change_text", "scenario_rows"]
 
 SCENARIO_HEADS: Final = ("Scenario", "Accepted", "Share", POINTS, "What is changed")
 
@@ -34,7 +34,7 @@ def scenario_rows(found: Sequence[ScenarioAnswers], impossible: Mapping[str, str
             each.name,
             count_text(each.run.accepted),
             share_text(each.acceptance),
-            _change(each.acceptance_difference, share=True),
+            change_text(each.acceptance_difference, share=True),
             "" if each.scenario is None else changes_text(each.scenario),
         )
         for each in found
@@ -66,7 +66,7 @@ def _cells(answer: ForecastAnswer, ranges: bool, above: bool) -> list[str]:
     for key, value in numbers if ranges else numbers[:1]:
         change = answer.differences.get(key)
         if key == "mean" and not answer.has_range:
-            found += [share_text(value), _change(change, share=True)]
+            found += [share_text(value), change_text(change, share=True)]
         elif not answer.has_range:
             found += ["", ""]
         elif form.kind is Kind.DATE or change is None:
@@ -76,11 +76,11 @@ def _cells(answer: ForecastAnswer, ranges: bool, above: bool) -> list[str]:
             found += [form.estimate(value), f"{'+' if change.value > 0 else ''}{form.estimate(change)}"]
     if above:
         share = "" if answer.above is None else share_text(answer.above)
-        found += [share, _change(answer.differences.get("above"), share=True)]
+        found += [share, change_text(answer.differences.get("above"), share=True)]
     return found
 
 
-def _change(found: Estimate | None, *, share: bool = False) -> str:
+def change_text(found: Estimate | None, *, share: bool = False) -> str:
     """`+0.59 ± 0.03`, of shares in percentage points; empty for the workbook itself."""
     if found is None or math.isnan(found.value):
         return ""

@@ -27,7 +27,7 @@ from xlmc.outputs.document.parts import (
     cell_text,
 )
 from xlmc.outputs.sheets.cells import Shown, spread_format
-from xlmc.outputs.sheets.styles import DARK, INK, SIZE, across, bounds, no_reference, straight, upwards
+from xlmc.outputs.sheets.styles import DARK, INK, LIGHT, SIZE, across, bounds, no_reference, straight, upwards
 
 if TYPE_CHECKING:
     from xlsxwriter.chart import Chart as ExcelChart
@@ -181,9 +181,14 @@ def _numbers_format(shown: Lines) -> str:
 
 
 def _bar_chart(book: Workbook, chart: Chart, shown: Bars, numbers: Page) -> ExcelChart:
-    made = straight(book.add_chart({"type": "bar", "subtype": "stacked"}))
-    ends: list[list[str | float]] = [[bar.name, *(piece[1] for piece in bar.pieces)] for bar in shown.bars]
-    pieces = max((len(bar.pieces) for bar in shown.bars), default=0)
+    """Draw bars from 0, those of one row over each other: each look is a series."""
+    made = straight(book.add_chart({"type": "bar"}))
+    looks = [*dict.fromkeys(look for bar in shown.bars for _, _, look in bar.pieces)]
+    ends: list[list[str | float]] = []
+    for bar in shown.bars:
+        found: dict[str, float] = {look: end for _, end, look in bar.pieces}
+        ends.append([bar.name, *(found.get(look, 0.0) for look in looks)])
+    pieces = len(looks)
     heads = (chart.across, *(f"To {index + 1}" for index in range(pieces)))
     first, last, column = _columns(numbers, heads, ends, ("", *["General"] * pieces))
     for index in range(pieces):
@@ -191,8 +196,9 @@ def _bar_chart(book: Workbook, chart: Chart, shown: Bars, numbers: Page) -> Exce
             {
                 "categories": [numbers.name, first, column, last, column],
                 "values": [numbers.name, first, column + 1 + index, last, column + 1 + index],
-                "fill": {"color": DARK},
+                "fill": {"color": DARK if looks[index] == "dark" else LIGHT},
                 "gap": 40,
+                "overlap": 100,
             }
         )
     made.set_x_axis({**across(), "name": no_reference(chart.across)})

@@ -23,6 +23,7 @@ _COMMANDS: Final = {
     "Optimised": "optimise",
     "Screening": "screen",
     "Stability": "stability",
+    "Stressed": "stress",
     "Study": "methods",
     "TwoLoops": "uncertainty",
 }

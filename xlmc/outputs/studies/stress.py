@@ -1,0 +1,328 @@
+"""What `xlmc stress` found, as a document: the answers with assumptions in their tails, and what sets answers apart."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from functools import partial
+from typing import TYPE_CHECKING, Final
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.stress import Moved, Part, Scenario, Stressed, Tail
+    from xlmc.montecarlo.definitions.definitions import Forecast
+    from xlmc.montecarlo.statistics import Estimate
+    from xlmc.outputs.document.parts import Block, Figure, Table
+    from xlmc.outputs.study_report import StudyReport
+
+__all__ = ["stress_report"]
+
+_DRAWN: Final = 12
+"""Assumptions of a chart."""
+
+_ROWS: Final = 20
+"""Assumptions of a table; JSON has all."""
+
+_TOLD: Final = 3
+"""Inputs that a sentence names."""
+
+
+def stress_report(found: Stressed) -> StudyReport:
+    """Make the report."""
+    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.outputs.document.parts import blocks_of
+    from xlmc.outputs.study_report import StudyReport
+
+    run = found.run
+    below = (
+        f"{run.model.workbook.name}: {count_text(run.accepted)} accepted of {count_text(run.trials)} trials, "
+        f"seed {run.settings.seed}"
+    )
+    blocks = blocks_of([*_sentences(found), *_blocks(found), *_meaning(found)])
+    return StudyReport("Where do the answers go?", below, blocks, "Stress", partial(_as_json, found), run)
+
+
+def _percent(share: float) -> str:
+    from xlmc.montecarlo.statistics.number_text import number_text
+
+    return f"{number_text(share, 3)} %"
+
+
+def _sentences(found: Stressed) -> Iterator[str]:
+    for forecast in found.forecasts:
+        pair = next(iter(found.ranked(forecast.name)), None)
+        if pair is None:
+            continue
+        tails = [each for each in pair if forecast.name in each.parts]
+        if tails:
+            tail = max(tails, key=lambda each: abs(each.parts[forecast.name].changes["mean"].value))
+            yield _strongest(found, forecast, tail)
+    for scenario in found.scenarios:
+        yield _distinguishing(found, scenario)
+    if found.valueless:
+        yield f"A number in hardly any accepted trial: {'; '.join(found.valueless)}."
+
+
+def _strongest(found: Stressed, forecast: Forecast, tail: Tail) -> str:
+    """Say which tail moves the mean of a forecast most."""
+    part, form = tail.parts[forecast.name], found.forms[forecast.name]
+    change, units = part.changes["mean"], f" {forecast.units}" if forecast.units else ""
+    if change.error is not None and abs(change.value) < 3.0 * change.error:
+        return f"{forecast.name}: these trials show no assumption whose tails move the mean."
+    share = f"share of “{found.texts[forecast.name]}”" if forecast.name in found.texts else "probability"
+    what = share if form.factor != 1.0 and "low" not in part.numbers else "mean"
+    side = "highest" if tail.is_high else "lowest"
+    return (
+        f"{forecast.name} moves most with {tail.assumption}: with its {side} {_percent(found.share)} the {what} is "
+        f"{form.estimate(part.numbers['mean'])}{units}, instead of "
+        f"{form.estimate(found.base[forecast.name].numbers['mean'])}{units}."
+    )
+
+
+def _distinguishing(found: Stressed, scenario: Scenario) -> str:
+    """Say which inputs set the trials of a scenario apart."""
+    from xlmc.montecarlo.statistics.number_text import count_text
+
+    what = f"{scenario.forecast} {scenario.words}{_limits(found, scenario)}"
+    if not scenario.inputs:
+        return f"{what}: they say nothing of inputs."
+    sure = [each for each in scenario.inputs if each.is_sure]
+    if not sure:
+        return f"{what}: no input has another median there than in all trials, as far as these tell."
+    named = "; ".join(f"{each.assumption} ({_shift(each.shift)} SD)" for each in sure[:_TOLD])
+    more = f"; and {count_text(len(sure) - _TOLD)} more" if len(sure) > _TOLD else ""
+    return f"{what} is distinguished by {named}{more}."
+
+
+def _limits(found: Stressed, scenario: Scenario) -> str:
+    """Write how many trials a scenario has, and its limits where the words have percentiles."""
+    from xlmc.montecarlo.statistics.number_text import count_text
+
+    form, trials = found.forms[scenario.forecast], f"{count_text(scenario.trials)} trials"
+    mean = found.base[scenario.forecast].numbers["mean"]
+    if "p" not in scenario.words.casefold():
+        return f" ({trials})"
+    if math.isinf(scenario.high):
+        return f" ({form.beside(scenario.low, mean)} or more, {trials})"
+    if math.isinf(scenario.low):
+        return f" ({form.beside(scenario.high, mean)} or less, {trials})"
+    return f" ({form.beside(scenario.low, mean)} to {form.beside(scenario.high, mean)}, {trials})"
+
+
+def _shift(found: Estimate) -> str:
+    from xlmc.montecarlo.statistics import format_estimate
+
+    return f"{'+' if found.value > 0 else ''}{format_estimate(found.value, found.error)}"
+
+
+def _blocks(found: Stressed) -> Iterator[Block]:
+    for forecast in found.forecasts:
+        ranked = found.ranked(forecast.name)
+        if not ranked:
+            continue
+        yield _table(found, forecast, ranked[:_ROWS])
+        figure = _chart(found, forecast, ranked[:_DRAWN])
+        if figure is not None:
+            yield figure
+    for scenario in found.scenarios:
+        if scenario.inputs:
+            yield _of_scenario(found, scenario)
+
+
+def _title(found: Stressed, forecast: Forecast) -> str:
+    text = f"share of “{found.texts[forecast.name]}”" if forecast.name in found.texts else ""
+    return ", ".join(filter(None, (forecast.name, forecast.units, text)))
+
+
+def _table(found: Stressed, forecast: Forecast, ranked: list[tuple[Tail, Tail]]) -> Table:
+    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.outputs.document.parts import Table
+
+    base, form = found.base[forecast.name], found.forms[forecast.name]
+    heads = ["Assumption", "Restricted to"]
+    if "low" in base.numbers:
+        share = number_text(100.0 * forecast.central, 3)
+        heads += ["Mean", "Change", f"{share} % range from", "Change", "to", "Change"]
+    else:
+        heads += ["Share", "Change, points"]
+    if "above" in base.numbers:
+        heads += [f"Above {form.number(forecast.threshold or 0.0)}", "Change, points"]
+    rows = [("all trials", "", *_numbers(found, forecast, base))]
+    for tail in (each for pair in ranked for each in pair):
+        if forecast.name in tail.parts:
+            cells = _numbers(found, forecast, tail.parts[forecast.name])
+            rows.append((tail.assumption, _restricted(found, tail), *cells))
+    return Table(_title(found, forecast), tuple(heads), tuple(rows), tuple(range(2, len(heads))))
+
+
+def _restricted(found: Stressed, tail: Tail) -> str:
+    """Write the range of a tail: `up to 12.3 mph`."""
+    from xlmc.montecarlo.statistics.number_text import number_text
+
+    row = next(each for each in found.run.model.assumptions if each.name == tail.assumption)
+    form = found.run.model.dated.get(tail.assumption)
+    limit = number_text(tail.limit, 4) if form is None else form.number(tail.limit)
+    return f"{'from' if tail.is_high else 'up to'} {limit}{f' {row.units}' if row.units else ''}"
+
+
+def _numbers(found: Stressed, forecast: Forecast, part: Part) -> Iterator[str]:
+    """Yield the cells of a row: each number, and how far it has moved."""
+    from xlmc.outputs.scenario_tables import change_text
+    from xlmc.outputs.summary import share_text
+
+    form = found.forms[forecast.name]
+    for name, number in part.numbers.items():
+        change = part.changes.get(name)
+        if name == "above" or "low" not in part.numbers:
+            yield from (share_text(number), change_text(change, share=True))
+        else:
+            sign = "+" if change is not None and change.value > 0 else ""
+            yield from (form.estimate(number), "" if change is None else f"{sign}{form.spread(change)}")
+
+
+def _chart(found: Stressed, forecast: Forecast, ranked: list[tuple[Tail, Tail]]) -> Figure | None:
+    """Draw how far the mean moves with each assumption in its low tail, and in its high one."""
+    from xlmc.outputs.document.parts import Bar, Bars, Chart, Figure
+
+    bars = []
+    for pair in ranked:
+        moves = [
+            (each, each.parts[forecast.name].changes["mean"].value) for each in pair if forecast.name in each.parts
+        ]
+        pieces = tuple((0.0, move, "dark" if each.is_high else "light") for each, move in moves if math.isfinite(move))
+        if pieces:
+            bars.append(Bar(pair[0].assumption, pieces))
+    if not bars:
+        return None
+    is_mean, units = "low" in found.base[forecast.name].numbers, f", {forecast.units}" if forecast.units else ""
+    what = "Change of the mean" if is_mean else "Change of the share"
+    across = f"{what}{units * is_mean} (light: lowest {_percent(found.share)}, dark: highest)"
+    said = f"{_title(found, forecast)}: {what[0].lower()}{what[1:]} with each assumption in its tails"
+    return Figure(Chart("", across, Bars(tuple(bars), found.forms[forecast.name]), said, 125.0), said)
+
+
+def _of_scenario(found: Stressed, scenario: Scenario) -> Table:
+    from xlmc.outputs.document.parts import Table
+
+    heads = ("Assumption", "Median", "In these trials", "Moved by, SD", "Lies at", "By chance", "Distinguishes")
+    rows = tuple(_moved_row(found, each) for each in scenario.inputs[:_ROWS])
+    title = f"Inputs where {scenario.forecast} is {scenario.words}{_limits(found, scenario)}"
+    return Table(title, heads, rows, (1, 2, 3, 4, 5))
+
+
+def _moved_row(found: Stressed, each: Moved) -> tuple[str, ...]:
+    from xlmc.montecarlo.definitions.forms import PLAIN
+
+    form = found.run.model.dated.get(each.assumption, PLAIN)
+    return (
+        each.assumption,
+        form.estimate(each.median),
+        form.estimate(each.within),
+        _shift(each.shift),
+        f"P{_percent(100.0 * each.at).removesuffix(' %')}",
+        _chance(each.chance),
+        "yes" if each.is_sure else "no",
+    )
+
+
+def _chance(chance: float) -> str:
+    """Write a probability of chance.
+
+    >>> [_chance(chance) for chance in (1e-9, 0.034, 1.0)]
+    ['< 0.001', '0.034', '1']
+    """
+    from xlmc.montecarlo.statistics.number_text import number_text
+
+    return "< 0.001" if chance < 0.001 else number_text(chance, 2)
+
+
+def _meaning(found: Stressed) -> Iterator[str]:
+    from xlmc.montecarlo.statistics.number_text import count_text
+
+    share = _percent(found.share)
+    if found.still:
+        yield f"Of hardly more than one value in the accepted trials, and so without tails: {'; '.join(found.still)}."
+    hidden = len(found.tails) // 2 - _ROWS
+    if hidden > 0:
+        yield f"Tables have the {_ROWS} assumptions that move most; {count_text(hidden)} more are in the JSON (--json)."
+    filtered = "accepted " if found.run.accepted < found.run.trials else ""
+    yield (
+        f"A tail: the trials in which the assumption is among the lowest, or highest, {share} of its {filtered}values. "
+        "What is correlated with it or depends on it moves as it then does. Change: to all trials; its ± comes from "
+        "the trials that both share. ± is the standard error (Monte Carlo error)."
+    )
+    if found.scenarios:
+        yield (
+            "Moved by: the median in these trials less that in all, in standard deviations of the input. Lies at: the "
+            "percentile of all trials at which the median of these lies. By chance: the probability of so large a move "
+            "of an input that has nothing to do with it. It distinguishes where it has moved by three errors or more."
+        )
+
+
+def _as_json(found: Stressed) -> dict[str, object]:
+    run = found.run
+    return {
+        "book": str(run.model.path),
+        "trials": run.trials,
+        "accepted": run.accepted,
+        "seed": run.settings.seed,
+        "share": found.share,
+        "forecasts": [
+            {
+                "name": each.name,
+                "cell": str(each.cell),
+                "units": each.units,
+                "text": found.texts.get(each.name),
+                "all_trials": _part_json(found.base[each.name]),
+                "tails": [
+                    {
+                        "assumption": tail.assumption,
+                        "tail": "high" if tail.is_high else "low",
+                        "limit": tail.limit,
+                        **_part_json(tail.parts[each.name]),
+                    }
+                    for pair in found.ranked(each.name)
+                    for tail in pair
+                    if each.name in tail.parts
+                ],
+            }
+            for each in found.forecasts
+        ],
+        "scenarios": [_scenario_json(each) for each in found.scenarios],
+        "without_tails": found.still,
+        "forecasts_without_numbers": found.valueless,
+    }
+
+
+def _part_json(part: Part) -> dict[str, object]:
+    from xlmc.outputs.studies.json_numbers import estimate_json
+
+    return {
+        "trials": part.trials,
+        **{name: estimate_json(each) for name, each in part.numbers.items()},
+        "changes": {name: estimate_json(each) for name, each in part.changes.items()},
+    }
+
+
+def _scenario_json(found: Scenario) -> dict[str, object]:
+    from xlmc.montecarlo.statistics.estimate import finite
+    from xlmc.outputs.studies.json_numbers import estimate_json
+
+    return {
+        "forecast": found.forecast,
+        "range": found.words,
+        "from": finite(found.low),
+        "to": finite(found.high),
+        "trials": found.trials,
+        "inputs": [
+            {
+                "assumption": each.assumption,
+                "median": estimate_json(each.median),
+                "median_in_range": estimate_json(each.within),
+                "moved_by_standard_deviations": estimate_json(each.shift),
+                "percentile": 100.0 * each.at,
+                "probability_by_chance": each.chance,
+                "distinguishes": each.is_sure,
+            }
+            for each in found.inputs
+        ],
+    }

@@ -197,7 +197,10 @@ def told(text):
         if power is None and found[0].find("%") < 0 and text[found.start() - 1 : found.start()] == "(":
             continue  # a line of a narrow column, whose power of ten stands in the next
         value, half = read(found["value"] or found["far"], power)
-        yield value, half, *read(found["error"] or found["far_error"], power), found[0], (1.0,)
+        error, half_error = read(found["error"] or found["far_error"], power)
+        if not value:  # a zero has no digits that say how it was rounded: it was as its error was
+            half = max(half, half_error)
+        yield value, half, error, half_error, found[0], (1.0,)
 
 
 @pytest.mark.parametrize("output", ["terminal", "html", "pdf", "docx"])

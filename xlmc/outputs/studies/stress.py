@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -175,8 +176,13 @@ def _numbers(found: Stressed, forecast: Forecast, part: Part) -> Iterator[str]:
         if name == "above" or "low" not in part.numbers:
             yield from (share_text(number), change_text(change, share=True))
         else:
-            sign = "+" if change is not None and change.value > 0 else ""
-            yield from (form.estimate(number), "" if change is None else f"{sign}{form.spread(change)}")
+            yield from (form.estimate(number), "" if change is None else _signed(form.spread(change), change.value))
+
+
+def _signed(text: str, value: float) -> str:
+    """Put a plus before what is above 0, unless it is rounded to 0."""
+    is_zero = re.search("[1-9]", text.partition("±")[0]) is None
+    return f"+{text}" if value > 0 and not is_zero else text
 
 
 def _chart(found: Stressed, forecast: Forecast, ranked: list[tuple[Tail, Tail]]) -> Figure | None:

@@ -142,7 +142,7 @@ def _table(found: Stressed, forecast: Forecast, ranked: list[tuple[Tail, Tail]])
     heads = ["Assumption", "Restricted to"]
     if "low" in base.numbers:
         share = number_text(100.0 * forecast.central, 3)
-        heads += ["Mean", "Change", f"{share} % range from", "Change", "to", "Change"]
+        heads += ["Mean", "Change", f"{share} % range from", "to"]
     else:
         heads += ["Share", "Change, points"]
     if "above" in base.numbers:
@@ -166,7 +166,7 @@ def _restricted(found: Stressed, tail: Tail) -> str:
 
 
 def _numbers(found: Stressed, forecast: Forecast, part: Part) -> Iterator[str]:
-    """Yield the cells of a row: each number, and how far it has moved."""
+    """Yield the cells of a row: mean and shares with how far they have moved, and the ends of the range."""
     from xlmc.outputs.scenario_tables import change_text
     from xlmc.outputs.summary import share_text
 
@@ -175,6 +175,8 @@ def _numbers(found: Stressed, forecast: Forecast, part: Part) -> Iterator[str]:
         change = part.changes.get(name)
         if name == "above" or "low" not in part.numbers:
             yield from (share_text(number), change_text(change, share=True))
+        elif name != "mean":
+            yield form.estimate(number)
         else:
             yield from (form.estimate(number), "" if change is None else _signed(form.spread(change), change.value))
 

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from xlmc.montecarlo.rare import inverse_image
@@ -82,6 +82,10 @@ def test_powers(power, ends):
     check(inverse_image.powered(Spans.between(np.array([low]), np.array([high])), power), values, low, high)
 
 
+@example(ends=(math.inf, math.inf), of=(1.0, 1.0, 1.0, 0.5))
+@example(ends=(-math.inf, -math.inf), of=(1.0, 1.0, 1.0, 0.5))
+@example(ends=(1.0, math.inf), of=(1.0, 1.0, 1.0, 0.5))
+@example(ends=(-math.inf, 1.0), of=(1.0, 1.0, 1.0, 0.5))
 @given(ends=st.tuples(ENDS, ENDS), of=st.tuples(*[st.sampled_from([-2.5, -1.0, 0.0, 0.5, 1.0, 3.0])] * 4))
 def test_ratios_of_lines(ends, of):
     low, high = min(ends), max(ends)

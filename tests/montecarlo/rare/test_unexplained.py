@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.special import ndtr
+from scipy.stats import norm
 from simulated import simulated
 
 from xlmc.montecarlo.rare.account import RareAccount, probability_text
@@ -16,7 +17,9 @@ from xlmc.montecarlo.rare.splitting import explore
 from xlmc.montecarlo.rare.unexplained import (
     Evidence,
     Tempered,
+    _quantile,
     find_unexplained,
+    join_evidence,
     plain_assumptions,
     pool,
     wide_assumptions,
@@ -59,6 +62,84 @@ def test_plain_trials_are_found_again_by_their_numbers(book):
     order = [*places, "a"]
     assert 2 + 2 * ndtr(points[:, order.index("a")]) == pytest.approx(run.inputs["a"], abs=1e-9)
     assert points[:, order.index("b")] == pytest.approx(run.inputs["b"], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("dimensions", "together"),
+    [
+        (1, [1.5, 2.0, 3.0, 4.0]),
+        (3, [1.5, 2.0, 3.0, 4.0]),  # 4³ is 64, the largest ratio at the median
+        (4, [1.5, 2.0]),
+        (6, [1.5, 2.0]),
+        (7, [1.5]),
+        (11, [64.0 ** (1 / 11)]),
+    ],
+)
+def test_spreads_and_shares_of_widened_assumptions(dimensions, together):
+    """Plain in 0.15 of the trials, all together in 0.5, one alone four times as wide in 0.35."""
+    spread = wide_assumptions(dimensions)
+    count = len(together)
+    assert spread.shares == pytest.approx([0.15, *[0.5 / count] * count, *[0.35 / dimensions] * dimensions])
+    assert (spread.spreads[0] == 1.0).all()
+    assert spread.spreads[1 : count + 1] == pytest.approx(np.outer(together, np.ones(dimensions)))
+    assert spread.spreads[count + 1 :].tolist() == np.where(np.eye(dimensions), 4.0, 1.0).tolist()
+
+
+def test_weights_are_ratios_of_densities():
+    """Of a mixture of normals of spreads 1 and 3, 2 and 0.5, in two dimensions, by SciPy."""
+    shares, spreads = np.array([0.25, 0.75]), np.array([[1.0, 3.0], [2.0, 0.5]])
+    points = np.array([[0.0, 0.0], [1.0, -2.0], [-3.0, 0.5]])
+    plain = norm.pdf(points).prod(axis=1)
+    each = [norm.pdf(points, scale=scale).prod(axis=1) for scale in spreads]
+    mixed = shares[0] * each[0] + shares[1] * each[1]
+    assert np.exp(Tempered(shares, spreads).log_weights(points)) == pytest.approx(plain / mixed)
+
+
+@pytest.mark.parametrize(
+    ("weights", "share", "value"),
+    [
+        ([1, 1, 1, 1], 0.5, 2.0),
+        ([1, 1, 1, 1], 0.51, 3.0),
+        ([1, 1, 1, 1], 1.0, 4.0),
+        ([1, 1, 1, 1], 0.0, 1.0),
+        ([0, 0, 6, 2], 0.75, 3.0),
+        ([5, 1, 1, 1], 0.6, 1.0),
+    ],
+)
+def test_weighted_quantiles(weights, share, value):
+    order = [2, 0, 3, 1]  # in any order
+    values = np.array([1.0, 2.0, 3.0, 4.0])[order]
+    assert _quantile(values, np.array(weights, float)[order], share) == value
+
+
+def test_masses_and_shares():
+    found = Evidence(plain_assumptions(1), 50, np.zeros((3, 1)), np.log([0.1, 0.2, 0.7]))
+    assert found.mass == pytest.approx(1.0 / 50)
+    assert found.log_mass == pytest.approx(np.log(1.0 / 50))
+    assert found.shares == pytest.approx([0.1, 0.2, 0.7])
+    assert found.tells(1.99)
+    assert not found.tells(2.01)  # a hundredth of the probability
+
+
+@pytest.mark.parametrize(("times", "unexplained"), [(29.0, False), (31.0, True)])
+def test_what_is_thirty_times_heavier_than_usual_is_unexplained(times, unexplained):
+    """Under N(0, 0.5²) a point z weighs exp(1.5 z²)/2 as much as a plain trial."""
+    proposal = Tempered(np.ones(1), np.array([[0.5]]))
+    usual = np.full((1000, 1), 0.2)
+    far = np.array([[np.sqrt(0.04 + np.log(times) / 1.5)]])
+    known = [Evidence.of(plain_assumptions(1), 1000, far)]
+    assert len(find_unexplained(proposal, known, usual, np.ones(1000)).points) == unexplained
+
+
+def test_evidence_is_joined_as_if_from_one_source():
+    parts = [
+        Evidence.of(plain_assumptions(1), 500, np.array([[0.0]])),
+        Evidence.of(plain_assumptions(1), 300, np.empty((0, 1))),
+    ]
+    found = join_evidence(parts)
+    assert (found.trials, found.points.tolist()) == (800, [[0.0]])
+    assert found.logs == pytest.approx([0.0])
+    assert not len(join_evidence(parts[1:]).points)
 
 
 def two_parts(z):

@@ -9,6 +9,8 @@ import pytest
 
 import xlmc.montecarlo.statistics as xs
 from xlmc.montecarlo.loop.stopping.progress import RunningMoments
+from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.yes_no import coefficient_of_share, deviation_of_share, variance_of_share
 
 
 @pytest.fixture(params=["plain", "weighted", "replicated"])
@@ -80,3 +82,46 @@ def test_stop_rules_see_the_same(ones):
         running.add(part)
     assert running.mean().interval == pytest.approx(xs.mean(x).interval)
     assert running.standard_deviation().interval == pytest.approx(xs.standard_deviation(x).interval)
+
+
+Z = 1.959963984540054
+
+
+@pytest.mark.parametrize(
+    ("share", "interval", "deviation", "coefficient"),
+    [
+        (0.1, (0.05, 0.2), (0.05 * 0.95, 0.2 * 0.8), (2.0, math.sqrt(19.0))),
+        (0.9, (0.8, 0.95), (0.95 * 0.05, 0.8 * 0.2), (math.sqrt(1 / 19), 0.5)),
+        (0.4, (0.3, 0.6), (0.3 * 0.7, 0.25), (math.sqrt(2 / 3), math.sqrt(7 / 3))),  # greatest at a half
+        (0.6, (0.2, 0.7), (0.2 * 0.8, 0.25), (math.sqrt(3 / 7), 2.0)),
+        (0.5, (0.5, 0.7), (0.7 * 0.3, 0.25), (math.sqrt(3 / 7), 1.0)),
+        (0.0, (0.0, 0.2), (0.0, 0.2 * 0.8), (2.0, math.inf)),
+        (1.0, (0.8, 1.0), (0.0, 0.8 * 0.2), (0.0, 0.5)),
+    ],
+)
+def test_numbers_that_follow_from_the_interval_of_a_share(share, interval, deviation, coefficient):
+    """The variance p(1 − p), its root, and √((1 − p)/p), where the interval of p leads."""
+    given = Estimate(share, 0.03, interval, 500)
+    variance = share * (1.0 - share)
+    found = variance_of_share(given, variance)
+    assert found.interval == pytest.approx(deviation)
+    assert (found.value, found.error) == (variance, pytest.approx((deviation[1] - deviation[0]) / 2 / Z))
+    found = deviation_of_share(given, math.sqrt(variance))
+    low, high = map(math.sqrt, deviation)
+    assert found.interval == pytest.approx((low, high))
+    assert found.error == pytest.approx((high - low) / 2 / Z)
+    if share:
+        found = coefficient_of_share(given, math.sqrt((1.0 - share) / share))
+        assert found.interval == pytest.approx(coefficient)
+        assert found.error == pytest.approx((coefficient[1] - coefficient[0]) / 2 / Z)
+        assert found.n == 500
+
+
+def test_without_an_interval_or_a_value_nothing_follows():
+    assert variance_of_share(Estimate(0.1, 0.03, None, 500), 0.09) == Estimate(0.09, n=500)
+    unknown = coefficient_of_share(Estimate(0.0, 0.03, (0.0, 0.2), 500), math.inf)
+    assert (unknown.error, unknown.interval) == (None, None)
+    wide = coefficient_of_share(Estimate(0.1, 0.03, (0.0, 0.2), 500), 3.0)
+    assert (wide.error, wide.interval) == (None, (2.0, math.inf))
+    narrower = variance_of_share(Estimate(0.1, 0.03, (0.05, 0.2), 500), 0.09, confidence=0.5)
+    assert narrower.error == pytest.approx((0.16 - 0.0475) / 2 / 0.6744897501960817)

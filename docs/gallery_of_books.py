@@ -26,6 +26,8 @@ BOOKS = {
     "examples/collinear-equal-cars.xlsx": "Two equal cars in one line",
     "examples/collinear-head-on.xlsx": "Head-on in one line",
     "examples/textbook-claim.xlsx": "A textbook's claim, held against the equations",
+    "examples/bumper-test.xlsx": "A bumper test at 5.5 mph: both delta-V",
+    "examples/motorcycle-head-on.xlsx": "A motorcycle head-on into a car",
     "examples/crush-balance.xlsx": "Damage energy of two vehicles",
     "examples/skid-100-ft.xlsx": "A skid of 100 feet, and the way before it",
     "examples/yaw-mark.xlsx": "The critical speed of a yaw mark",

@@ -10,7 +10,9 @@ from templates import (
     critical_speed_yaw,
     crush_energy,
     edr_speed,
+    low_speed,
     momentum_energy,
+    motorcycle,
     skid,
     time_distance,
     video_speed,
@@ -130,6 +132,62 @@ _BARRIER = filled(
         "The worked example of SAE 2019-01-0422: a car of 3574.2 lb strikes a barrier of 10,000,000 lb with its right "
         "front corner. Published: delta-V −35.7275 mph along and 7.5998 mph to the left, change in yaw rate −176.43 "
         "deg/s, 170,421 ft·lb lost. g is 32.2 ft/s², as the published change in yaw rate requires."
+    ),
+)
+
+_BUMPER_TEST = filled(
+    edition(low_speed.TEMPLATE, Edition.IMPERIAL),
+    "A Polo into a Fiesta that stood",
+    "5.5 mph; delta-V 3.5 and 3.1 mph",
+    {
+        "w_1": 3100,
+        "w_2": 3500,
+        "e": 0.2,
+        "V1_before": 5.5,
+        "f_1": 0,
+        "f_2": 0,
+        "v_bumper_1": 2.5,
+        "v_bumper_2": 2.5,
+    },
+    _GIVEN,
+    _about(
+        "A published bumper test: a closing speed of 5.5 mph left delta-V of 3.5 and 3.1 mph. Both together are (1 "
+        "+ e) times the closing speed: e = 0.2. Their ratio is that of the masses; only that ratio is known here, not "
+        "the weights themselves. Brakes were off. Deflection and shape of the force are the template's examples, so "
+        "that duration and mean accelerations are too.",
+        "Bumpers that take 2.5 mph each, as 49 CFR 581.5 asks, would be at their limits at a closing speed of 5 mph "
+        "if they were no better than that: section 3 of sheet Model.",
+    ),
+)
+
+_MOTORCYCLE = filled(
+    edition(motorcycle.TEMPLATE, Edition.SI),
+    "A motorcycle head-on into a car",
+    "250 kg against 1200 kg at 70 km/h, which go on together at 45 km/h",
+    {
+        "d_upright": 0,
+        "m_1": 250,
+        "m_2": 1200,
+        "alpha_1": 180,
+        "alpha_2": 0,
+        "beta_1": 0,
+        "beta_2": 0,
+        "s_1": (45 / _KMH_PER_M_S) ** 2 / (2 * 0.65 * 9.80665),
+        "f_1": 0.65,
+        "s_2": (45 / _KMH_PER_M_S) ** 2 / (2 * 0.65 * 9.80665),
+        "f_2": 0.65,
+        "V2_before": 70,
+        "s": 0,
+        "car_known": 2,
+    },
+    _GIVEN,
+    _about(
+        "A worked problem (userz.net): 1200 kg at 70 km/h meet a motorcycle of 250 kg and push it on at 45 km/h. Its "
+        "speed was 75 km/h. The page prints 74.23, as it rounds to 19.4 and 12.5 m/s on the way: with so light a "
+        "partner 0.16 km/h of the car are 0.8 km/h of the motorcycle, and a check of sheet Model is red. "
+        "The ways to rest are those of 45 km/h at 0.65 g.",
+        "Head-on, directions say nothing (their sine is 0): the speed of the car is entered, and momentum taken along "
+        "the motorcycle's way.",
     ),
 )
 
@@ -314,6 +372,8 @@ PUBLISHED: dict[str, Template] = {
     "collinear-head-on": _HEAD_ON,
     "textbook-claim": _TEXTBOOK,
     "barrier-corner": _BARRIER,
+    "bumper-test": _BUMPER_TEST,
+    "motorcycle-head-on": _MOTORCYCLE,
     "crush-balance": _CRUSH,
     "airborne-amy": _AMY,
     "left-turn": _LEFT_TURN,

@@ -28,6 +28,8 @@ TEMPLATES = (
     "video-speed",
     "momentum-energy",
     "pedestrian",
+    "low-speed",
+    "motorcycle",
     "beam",
     "tolerance-stack",
     "mass-calibration",

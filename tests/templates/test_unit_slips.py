@@ -27,6 +27,8 @@ FRICTION = {
     "edr-speed": ("f",),
     "momentum-energy": ("f_1", "f_2"),
     "pedestrian": ("f", "mu"),
+    "low-speed": ("f_after",),
+    "motorcycle": ("f_upright", "f_slide", "f_1", "f_2", "mu"),
 }
 ANGLE = {
     "momentum": ("alpha_1",),
@@ -35,8 +37,15 @@ ANGLE = {
     "pedestrian-throw": ("angle",),
     "airborne": ("theta",),
     "pedestrian": ("angle",),
+    "motorcycle": ("angle",),
 }
-RESTITUTION = {"collinear": ("e",), "planar-forward": ("e_n", "e_t"), "crush-energy": ("e",), "edr-speed": ("e",)}
+RESTITUTION = {
+    "collinear": ("e",),
+    "low-speed": ("e",),
+    "planar-forward": ("e_n", "e_t"),
+    "crush-energy": ("e",),
+    "edr-speed": ("e",),
+}
 SLIPS = {
     template: [
         (symbol, value)

@@ -406,8 +406,9 @@ _GUIDE = (
     GuideSection(
         "A published example can be wrong",
         (
-            "A textbook lets 1,500 kg run into 2,500 kg at rest, which leaves at 15 m/s; e = 0.5. It prints 80 m/s for "
-            "the impact speed. The answer is 26.67 m/s (96 km/h): the printed one has the separation speed negative. "
+            "A problem of Georgia Tech's (Impact, problem 2, aeresources.gatech.edu) lets 1,500 kg run into 2,500 kg "
+            "at rest, which leaves at 15 m/s; e = 0.5. It prints 80 m/s for the impact speed. The answer is 26.67 m/s "
+            "(96 km/h): the printed one has the separation speed negative. "
             "Entered as the claimed speed, 80 m/s turns its check red: restitution would be −0.5.",
         ),
     ),
@@ -442,6 +443,7 @@ TEMPLATE = Template(
         ForecastRow("«1» delta-V, «2» braked", "dV1b_[mph|kmh]", _SPEED),
         ForecastRow("«2» delta-V, braked", "dV2b_[mph|kmh]", _SPEED),
         *(ForecastRow(f"{vehicle(j)} mean acceleration", f"a_mean_{j}", "g") for j in (1, 2)),
+        ForecastRow("Closing speed", "closing_[mph|kmh]", _SPEED, stated="diagnostic"),
     ),
     filters=(
         FilterRow("Closing speed", "closing_[mph|kmh]", "One must catch the other to strike it", above=0),

@@ -486,7 +486,7 @@ TEMPLATE = Template(
         ),
         *curve_evidence(),
     ),
-    diagram=curve_diagram("e", "closing_[mph|kmh]"),
+    diagram=curve_diagram("e", "closing_[mph|kmh]", low_speeds=True),
     settings=(("Trials", 200_000), ("Seed", 999)),
     correlations=(),
     correlation_note="Do the weights share an error? Then correlate them here.",

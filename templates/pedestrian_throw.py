@@ -240,7 +240,7 @@ _GUIDE = (
             *FRICTION_ROWS,
             ("Motorcycle on its side", ".45 to .58"),
             ("Motorcycle with a fairing", "about .26"),
-            ("Vehicle tyres, dry asphalt, averages of tests", ".72 to .78"),
+            ("Vehicle tyres, dry asphalt, averages of recent studies (mfes.com)", ".72 to .78"),
         ),
     ),
     CAVEATS,

@@ -94,8 +94,9 @@ _TEXTBOOK = filled(
     },
     _GIVEN,
     _about(
-        "A textbook prints 80 m/s (288 km/h) for the impact speed. The answer is 26.67 m/s (96 km/h): the printed one "
-        "comes from a separation speed of the wrong sign. It is entered here as the claimed speed, and its check in "
+        "Georgia Tech's Impact, problem 2 (aeresources.gatech.edu) prints 80 m/s (288 km/h) for the impact speed. The "
+        "answer is 26.67 m/s (96 km/h): the printed one comes from a separation speed of the wrong sign. It is entered "
+        "here as the claimed speed, and its check in "
         "sheet Model is red: «1» would leave through «2», with a restitution of −0.5."
     ),
 )

@@ -112,10 +112,19 @@ def curve_evidence() -> tuple[EvidenceRow, ...]:
     )
 
 
-def curve_diagram(restitution: str, speed: str) -> Diagram:
-    """The published range against closing speed, and the base case in it."""
+def curve_diagram(restitution: str, speed: str, *, low_speeds: bool = False) -> Diagram:
+    """The published range against closing speed, and the base case in it.
+
+    Args:
+        restitution: its symbol.
+        speed: symbol of the closing speed, in mph or km/h.
+        low_speeds: draw as far as 20 mph, and no farther than the base case asks for.
+    """
 
     def ends(symbol: str) -> tuple[tuple[str, str], ...]:
+        if low_speeds:
+            last = f"MAX([20|32],1.2*{speed})"
+            return (("0", f"{symbol}_1"), ("Vc_curve_1", f"{symbol}_1"), (last, _between(symbol, last)))
         inner = tuple((f"Vc_curve_{k}", f"{symbol}_{k}") for k in (1, 2, 3))
         return (("0", f"{symbol}_1"), *inner, (f"MAX(1.2*Vc_curve_3,{speed})", f"{symbol}_3"))
 

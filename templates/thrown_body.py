@@ -43,8 +43,8 @@ THROWN = (
         "Fall of the body's centre of gravity, from projection to rest",
         "[ft|m]",
         Both(2.3, 0.70),
-        "Example, an adult on foot: [35 in|0.89 m] above the feet in a case on tarorigin.com, less some "
-        "[7 in|0.19 m], judged, where it lies. Enter: from this body's height, the vehicle's front, and the slope",
+        "Example, judged, for an adult on foot; no source read. Enter: from this body's height standing and lying, the "
+        "vehicle's front, and the slope",
         {"Low": Both(2.0, 0.6), "High": Both(2.7, 0.8)},
         number_format="0.00",
     ),

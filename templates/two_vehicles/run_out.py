@@ -259,8 +259,8 @@ RUN_OUT_GUIDE = GuideSection(
         "value. Distance and deceleration on sheet Inputs are segment 1. The drag of each segment is (q·f + (1 − "
         "q)·froll)·cos θ + sin θ.",
         "No default is given for the share q of a spinning vehicle with free wheels. 50 to 80 %, and 70 to 75 %, are "
-        "in use; McHenry warns against both as arbitrary, and would simulate the spinout (tarorigin.com, “Rotating "
-        "vehicles drag factor”, 15 March 1997; SAE 970949 on Marquard's method).",
+        "in use; McHenry cautions against both as arbitrary, and would simulate the spinout (mchenrysoftware.com, "
+        "forum, “What is the appropriate rotating vehicle % drag factor?”, 25 June 2009, which quotes SAE 970949).",
         "A skid before the impact: leave its friction blank on the same road, and each trial has one friction before "
         "and after. For more, xlmc simulate --feed carries the trials through another workbook; a mean and a standard "
         "deviation would lose what goes together.",

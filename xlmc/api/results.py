@@ -303,8 +303,8 @@ class Results:
         Args:
             forecast: its name; before and after filtering, that of an assumption. None for all forecasts, and where a
                 kind is named for the first that can be drawn.
-            kind: `histogram`, `cumulative`, `tornado`, `scatter`, `trend` or `before-after`; None for a histogram and
-                the cumulative share side by side.
+            kind: `histogram`, `cumulative`, `tornado`, `scatter`, `trend`, `before-after`, or `drawing`, which shows
+                trials over the workbook's drawing; None for a histogram and the cumulative share side by side.
             ax: axes to draw into; None for a figure of its own.
 
         Raises:

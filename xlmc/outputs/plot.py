@@ -26,6 +26,8 @@ from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.keywords import forecast_named
 from xlmc.montecarlo.statistics import rank_correlation
 from xlmc.montecarlo.statistics.number_text import count_text, in_signs, signs, styled_text
+from xlmc.outputs.document.drawn_trials import drawn_trials
+from xlmc.outputs.document.parts import Lines
 from xlmc.outputs.histogram import Figure as Drawn
 from xlmc.outputs.histogram import figures_of, short_name
 from xlmc.outputs.sheets.styles import DARK, GRID, INK, LIGHT
@@ -279,6 +281,25 @@ def _moved(simulation: RunResult, name: str) -> float:
     return float(np.abs(shares - np.arange(1, before.size + 1) / before.size).max())
 
 
+def _drawing(axes: Axes, simulation: RunResult, name: str | None) -> None:
+    """Draw accepted trials over the curves of the workbook's drawing; the name has no effect."""
+    chart = drawn_trials(simulation)
+    if chart is None:
+        hint = "Its chart of points and lines marks the base case by one point of two assumptions or forecasts"
+        raise SimulationError("the workbook has no drawing that trials can be drawn over", hint=hint)
+    assert isinstance(chart.data, Lines)
+    for line in chart.data.all:
+        across, upwards = zip(*((point[0], point[1]) for point in line.points), strict=True)
+        if line is chart.data.cloud:
+            axes.plot(across, upwards, ".", color=INK, markersize=2.5, alpha=0.5, label=line.name)
+        else:
+            axes.plot(across, upwards, label=line.name)
+    axes.set_title("Trials over the drawing", **_TITLE)
+    axes.legend(loc="best", fontsize=8, frameon=False)
+    _plain(axes, chart.across)
+    axes.set_ylabel(chart.data.upwards, parse_math=False)
+
+
 KINDS: Final[Mapping[str, Callable[[Axes, RunResult, str | None], None]]] = {
     "histogram": _histogram,
     "cumulative": _cumulative,
@@ -286,6 +307,7 @@ KINDS: Final[Mapping[str, Callable[[Axes, RunResult, str | None], None]]] = {
     "scatter": _scatter,
     "trend": _trend,
     "before-after": _before_after,
+    "drawing": _drawing,
 }
 """Kind of picture -> what draws it."""
 

@@ -95,6 +95,7 @@ def test_the_case_study_has_five_to_ten_pages_with_the_case_and_the_page_on_each
 def test_every_section_stands_in_the_report_in_its_order(built, word):
     absent = (
         "Notices",
+        SECTIONS["scene-trials"].heading,
         SECTIONS["evidence"].heading,
         SECTIONS["scenarios"].heading,
     )  # the paper's case has none of them

@@ -80,6 +80,16 @@ def test_what_is_no_scene_is_not_drawn(drawn):
     assert len(paths(scene_drawing(book(drawn, series([0, 1], [0, 1]))))) == 1
 
 
+def test_marks_without_a_line_are_drawn_each():
+    marker = '<c:marker><c:symbol val="circle"/><c:spPr><a:solidFill><a:srgbClr val="B3261E"/></a:solidFill></c:spPr>'
+    marked = series([2, 5], [3, 4], name="marks", line="<a:noFill/>").replace(
+        "</c:spPr>", f"</c:spPr>{marker}</c:marker>", 1
+    )
+    drawing = scene_drawing(book(series([0, 10], [0, 10]), marked))
+    assert len(paths(drawing)) == 1
+    assert drawing.svg.count('fill="#B3261E"') == 3  # two marks, and one beside their name
+
+
 def test_names_and_colours_never_become_markup():
     evil = "&lt;script&gt; &amp; &quot;"
     drawing = scene_drawing(book(series([0, 1], [0, 1], name=evil, line='<a:srgbClr val="&quot; onload"/>')))

@@ -152,7 +152,7 @@ def _bar(bar: Bar, top: float, row: float, left: float, across: Scale) -> list[s
 def _lines(chart: Chart, shown: Lines) -> Drawing:
     """Lines over grid lines, with their names beside them."""
     right, top, bottom = 420.0, 26.0 if chart.title else 10.0, 250.0
-    points = [point for line in shown.lines for point in _finite(line)]
+    points = [point for line in shown.all for point in _finite(line)]
     known = [shown.now] if shown.now is not None else []
     reach = [value for _, y, error in points for value in (y - (error or 0.0), y + (error or 0.0))]
     if shown.share:
@@ -168,6 +168,10 @@ def _lines(chart: Chart, shown: Lines) -> Drawing:
     found.append(line_to(left, bottom, right, bottom, INK))
     if shown.now is not None:
         found.append(line_to(x(shown.now), top, x(shown.now), bottom, INK, dashed=True))
+    if shown.cloud is not None:
+        found += [_dot(x(a), y(b)) for a, b, _ in _finite(shown.cloud)]
+        at = top + 14 + 18 * len(shown.lines)
+        found += [_dot(right + 23, at), text_at(right + 40, at + 4, _short(shown.cloud.name, _BESIDE), anchor="start")]
     for index, line in enumerate(shown.lines):
         colour, at = COLOURS[index % len(COLOURS)], top + 14 + 18 * index
         width = 1.4 if index else 2.2
@@ -183,6 +187,11 @@ def _lines(chart: Chart, shown: Lines) -> Drawing:
     found.append(text_at((left + right) / 2, bottom + 34, chart.across))
     found.append(text_at(14, (top + bottom) / 2, shown.upwards, turned=True))
     return drawing(found, 570.0, bottom + 42, chart.said, chart.width)
+
+
+def _dot(x: float, y: float) -> str:
+    """Draw a point of a cloud."""
+    return f'<circle cx="{x:.2f}" cy="{y:.2f}" r="1.3" fill="{INK}" fill-opacity="0.35"/>'
 
 
 def _finite(line: Line) -> list[tuple[float, float, float | None]]:

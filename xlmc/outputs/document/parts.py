@@ -129,6 +129,7 @@ class Lines:
         from_zero: the vertical axis reaches to 0, too.
         form_across: how the numbers of the horizontal axis are written.
         form_upwards: how those of the vertical axis are written.
+        cloud: points without a line, behind the lines.
     """
 
     lines: tuple[Line, ...]
@@ -139,11 +140,17 @@ class Lines:
     from_zero: bool = False
     form_across: Form = PLAIN
     form_upwards: Form = PLAIN
+    cloud: Line | None = None
+
+    @property
+    def all(self) -> tuple[Line, ...]:
+        """The cloud, where there is one, and the lines over it."""
+        return self.lines if self.cloud is None else (self.cloud, *self.lines)
 
     @property
     def ends(self) -> tuple[float, float]:
         """The least and the largest x."""
-        found = [point[0] for line in self.lines for point in line.points]
+        found = [point[0] for line in self.all for point in line.points]
         return min(found), max(found)
 
 

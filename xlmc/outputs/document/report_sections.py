@@ -30,6 +30,7 @@ from xlmc.montecarlo.statistics import proportion
 from xlmc.montecarlo.statistics.number_text import count_text, exact_text, fixed_text, number_text
 from xlmc.outputs.document.charts import influence_chart, shape_chart, shares_chart
 from xlmc.outputs.document.drawings import forecast_drawing
+from xlmc.outputs.document.drawn_trials import drawn_trials
 from xlmc.outputs.document.equations import equations_of
 from xlmc.outputs.document.glossary import GLOSSARY, WORDS_OF_EVIDENCE, WORDS_OF_SCENARIOS
 from xlmc.outputs.document.parts import Block, Bullets, Code, Content, Figure, Paragraph, Picture, Table
@@ -172,6 +173,15 @@ def _scene(material: Material) -> Iterator[Block]:
             drawn,
             "The base case as the chart of the workbook draws it, with the numbers that were stored in "
             "the chart when the workbook was last saved.",
+        )
+
+
+def _trials_over_scene(material: Material) -> Iterator[Block]:
+    drawn = drawn_trials(material.simulation)
+    if drawn is not None:
+        yield material.figure(
+            drawn,
+            f"{drawn.said}: the curves are those of the workbook's chart, as it stored them.",
         )
 
 
@@ -522,6 +532,7 @@ def _glossary(material: Material) -> Iterator[Block]:
 MAKERS: Final[Mapping[str, Callable[[Material], Iterator[Block]]]] = {
     "answer": _answer,
     "scene": _scene,
+    "scene-trials": _trials_over_scene,
     "forecasts": _forecasts,
     "filters": _filters,
     "evidence": _evidence,

@@ -18,7 +18,7 @@ from xlmc.outputs.document.drawings import Scale, drawing, line_to, path_of, sca
 from xlmc.outputs.document.parts import Drawing
 from xlmc.outputs.sheets.styles import GRID, INK
 
-__all__ = ["scene_drawing"]
+__all__ = ["SceneLine", "scene_drawing", "scene_lines"]
 
 _CHART: Final = re.compile(r"xl/charts/chart\d+\.xml")
 _SHEET: Final = re.compile(r"'?(scene|drawing)'?!", re.IGNORECASE)
@@ -32,13 +32,20 @@ _Points = list[tuple[float, float]]
 
 
 @dataclass(frozen=True, slots=True)
-class _Line:
-    """A named line of the chart, or a mark where it has one point only."""
+class SceneLine:
+    """A named line of the chart, or marks.
+
+    Attributes:
+        marks: the points are marked, and no line joins them.
+        where: the references of x and of y.
+    """
 
     name: str
     points: _Points
     colour: str
     dashed: bool
+    marks: bool
+    where: tuple[str, str]
 
 
 def scene_drawing(workbook: Workbook) -> Drawing | None:
@@ -47,15 +54,25 @@ def scene_drawing(workbook: Workbook) -> Drawing | None:
     Raises:
         WorkbookError: the part of a chart is no XML.
     """
+    found = scene_lines(workbook)
+    return None if found is None else _drawn(*found)
+
+
+def scene_lines(workbook: Workbook) -> tuple[list[SceneLine], list[str]] | None:
+    """Return the lines of that chart, and the titles of its axes; None if the workbook has none.
+
+    Raises:
+        WorkbookError: the part of a chart is no XML.
+    """
     for part in sorted(name for name in workbook.parts if _CHART.fullmatch(name)):
         root = tree(workbook.parts[part], part)
         lines = [line for line in map(_line, root.iterfind(".//{*}scatterChart/{*}ser")) if line is not None]
         if lines and len(lines) <= _MOST_SERIES:
-            return _drawn(lines, [_words(axis) for axis in root.iterfind(".//{*}valAx/{*}title")])
+            return lines, [_words(axis) for axis in root.iterfind(".//{*}valAx/{*}title")]
     return None
 
 
-def _line(series: Element) -> _Line | None:
+def _line(series: Element) -> SceneLine | None:
     """Return a series of points on the sheet; None if it is on another sheet, is too long, or is not shown."""
     where = [said.text or "" for said in series.iterfind("./*/{*}numRef/{*}f")]
     if len(where) != 2 or not all(map(_SHEET.match, where)):
@@ -63,16 +80,26 @@ def _line(series: Element) -> _Line | None:
     x, y = (_numbers(series.find(f"{{*}}{axis}")) for axis in ("xVal", "yVal"))
     shown = series.find("{*}spPr")
     outline = None if shown is None else shown.find("{*}ln")
-    if outline is not None and outline.find("{*}noFill") is not None:
+    marker = series.find("{*}marker")
+    marks = outline is not None and outline.find("{*}noFill") is not None
+    if marks and (marker is None or marker.find("{*}symbol[@val='none']") is not None):
         return None
+    coloured = marker.find("{*}spPr") if marks and marker is not None else outline
     points = [(x[index], y[index]) for index in sorted(x.keys() & y.keys())]
     if not points or len(points) > _MOST_POINTS:
         return None
-    colour = None if outline is None else outline.find("{*}solidFill/{*}srgbClr")
+    colour = None if coloured is None else coloured.find("{*}solidFill/{*}srgbClr")
     value = "" if colour is None else colour.get("val", "")
     dashed = outline is not None and outline.find("{*}prstDash") is not None
     name = series.find("{*}tx")
-    return _Line("" if name is None else _words(name), points, f"#{value}" if _COLOUR.fullmatch(value) else INK, dashed)
+    return SceneLine(
+        "" if name is None else _words(name),
+        points,
+        f"#{value}" if _COLOUR.fullmatch(value) else INK,
+        dashed,
+        marks or len(points) == 1,
+        (where[0], where[1]),
+    )
 
 
 def _words(element: Element) -> str:
@@ -106,7 +133,7 @@ def _with_step(scale: Scale, step: float) -> Scale:
     return coarser if len(coarser.ticks) > 1 else scale
 
 
-def _drawn(lines: list[_Line], axes: list[str]) -> Drawing:
+def _drawn(lines: list[SceneLine], axes: list[str]) -> Drawing:
     points = [point for line in lines for point in line.points]
     across = scale_of([x for x, _ in points], 0.0, 1.0)
     up = scale_of([y for _, y in points], 0.0, 1.0)
@@ -127,12 +154,13 @@ def _drawn(lines: list[_Line], axes: list[str]) -> Drawing:
         found.append(text_at(_LEFT - 6, y(tick) + 4, text, anchor="end"))
     for number, line in enumerate(lines):
         drawn = [(x(a), y(b)) for a, b in line.points]
-        if len(drawn) == 1:
-            (a, b) = drawn[0]
-            drawn = [(a - 3, b), (a + 3, b), (a, b), (a, b - 3), (a, b + 3)]
-        found.append(path_of(drawn, line.colour, 1.8, dashed=line.dashed))
         row = _TOP + 8 + 16 * number
-        found.append(line_to(right + 14, row, right + 36, row, line.colour, 1.8, dashed=line.dashed))
+        if line.marks:
+            places = [*drawn, (right + 25, row)]
+            found += [f'<circle cx="{a:.2f}" cy="{b:.2f}" r="3" fill="{line.colour}"/>' for a, b in places]
+        else:
+            found.append(path_of(drawn, line.colour, 1.8, dashed=line.dashed))
+            found.append(line_to(right + 14, row, right + 36, row, line.colour, 1.8, dashed=line.dashed))
         found.append(text_at(right + 42, row + 4, line.name[:40], anchor="start"))
     if len(axes) == 2:
         found.append(text_at((_LEFT + right) / 2, bottom + 30, axes[0]))

@@ -41,6 +41,11 @@ _WIDTHS: Final = (44.0, *[17.0] * 7)
 _LONG, _LONG_NUMBER = 60, 26
 """Characters of a column of the sheet that stay in one line, of texts and of numbers."""
 _LAST: Final = 5
+_CLOUD: Final = {
+    "line": {"none": True},
+    "marker": {"type": "circle", "size": 3, "fill": {"color": INK, "transparency": 60}, "border": {"none": True}},
+}
+"""How the points of a cloud look."""
 """The column to which paragraphs reach."""
 _CHART_ROWS: Final = 17
 _PIXELS: Final = 23
@@ -148,9 +153,10 @@ def _write_chart(page: Page, book: Workbook, chart: Chart, numbers: Page) -> Non
 
 def _line_chart(book: Workbook, chart: Chart, shown: Lines, numbers: Page) -> ExcelChart:
     made = straight(book.add_chart({"type": "scatter", "subtype": "straight"}))
-    for index, line in enumerate(shown.lines):
+    for index, line in enumerate(shown.all, len(shown.lines) - len(shown.all)):
         points = [(point[0], point[1]) for point in line.points]
-        spread = spread_format(points[-1][0] - points[0][0], shown.form_across)
+        places = [point[0] for point in points]
+        spread = spread_format(max(places) - min(places), shown.form_across)
         share = "0.00%" if shown.share else _numbers_format(shown)
         first, last, column = _columns(numbers, (line.name, shown.upwards), points, (spread, share))
         made.add_series(
@@ -160,6 +166,7 @@ def _line_chart(book: Workbook, chart: Chart, shown: Lines, numbers: Page) -> Ex
                 "values": [numbers.name, first, column + 1, last, column + 1],
                 "line": {"color": COLOURS[index % len(COLOURS)], "width": 1.5 if index else 2.25},
                 "marker": {"type": "circle" if shown.dots else "none", "size": 4},
+                **(_CLOUD if line is shown.cloud else {}),
             }
         )
     low, high = shown.ends
@@ -176,7 +183,7 @@ def _numbers_format(shown: Lines) -> str:
     """Return the format of the numbers of the vertical axis, in digits that tell its ends apart."""
     if shown.form_upwards == PLAIN:
         return "General"
-    heights = [point[1] for line in shown.lines for point in line.points if math.isfinite(point[1])]
+    heights = [point[1] for line in shown.all for point in line.points if math.isfinite(point[1])]
     return spread_format(max(heights) - min(heights), shown.form_upwards) if heights else "General"
 
 

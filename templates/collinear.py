@@ -366,6 +366,13 @@ _CHECKS = checks_section(
         "FALSE: forward is the direction of «1». Exchange the vehicles, or the signs.",
     ),
     check(
+        "check_way",
+        "A braked «2» stood or moved in the direction of «1»",
+        "OR(COUNT(t_impact,f_braked)<2,V2_i>=0)",
+        "validity",
+        "FALSE: of a vehicle that came the other way the tyres pull in both directions in turn. Clear its drag.",
+    ),
+    check(
         "check_claim",
         "The claimed speed is possible",
         "IF(V1_claimed<>0,AND(e_claimed>=0,e_claimed<1),TRUE)",

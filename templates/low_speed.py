@@ -371,6 +371,13 @@ _CHECKS = checks_section(
         "FALSE: restitution and deflection of bumpers do not hold there. Use collinear, or crush-energy.",
     ),
     check(
+        "check_way",
+        "A braked «2» stood or moved in the direction of «1»",
+        "OR(f_2=0,V2_before>=0)",
+        "validity",
+        "FALSE: of a vehicle that came the other way the tyres pull in both directions in turn. Set its drag to 0.",
+    ),
+    check(
         "check_forward",
         "A braked «1» is not thrown back",
         "OR(f_1=0,V1_f>=0)",

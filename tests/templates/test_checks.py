@@ -25,6 +25,7 @@ CASES = [
     ("collinear", "check_restitution check_order", {"e": -0.2}),
     ("collinear", "check_forward", {"known": 1, "V1_before": -10, "V2_before": -20}),
     ("collinear", "check_claim", {"V1_claimed": 90}),
+    ("collinear", "check_way", {"known": 1, "V1_before": 20, "V2_before": -10, "t_impact": 0.1, "f_braked": 0.6}),
     # Off centre, restitutions of opposite sign can add energy although each is below 1.
     ("planar-forward", "check_energy", {"e_n": 0.95, "e_t": -0.95, "gamma_t": 113, "x_1": 90, "y_1": -40, "y_2": -11}),
     ("planar-forward", "check_closing check_push", {"gamma_t": 281, "V1_before": 5, "V2_before": 60, "alpha_2": 190}),
@@ -98,6 +99,7 @@ CASES = [
     ("low-speed", "check_bumpers", {"kappa": 3}),
     ("low-speed", "check_low", {"V1_before": 30}),
     ("low-speed", "check_forward", {"f_1": 0.5, "w_1": 300}),
+    ("low-speed", "check_way", {"V2_before": -3}),
     ("motorcycle", "check_lengths", {"d_slide": -1}),
     ("motorcycle", "check_friction", {"f_slide": 51.5}),
     ("motorcycle", "check_body", {"mu": 6.6}),

@@ -709,5 +709,5 @@ TEMPLATE = Template(
     correlation_note="One motorcycle slid on one road before and after the impact: its frictions go together.",
     guide=_GUIDE,
     diagram=_DIAGRAM,
-    vehicles=("Motorcycle", "Car"),
+    vehicles=("Motorcycle 1", "Car 2"),
 )

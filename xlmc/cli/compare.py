@@ -18,7 +18,7 @@ from xlmc.cli.options import (
     quiet_option,
     tolerance_option,
 )
-from xlmc.cli.study_output import STUDY, give_out, study_options
+from xlmc.cli.study_output import STUDY, end_early, give_out, study_options
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison import ForecastComparison
@@ -103,6 +103,7 @@ def compare(
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]
     warnings(doubts, [f"{name}: {warning}" for name, run in runs for warning in run.refused])
     written.check()
+    end_early(found.ended)
     if doubts or found.of(comparison.Verdict.UNDECIDED) or any(_contradict(each) for each in found.rivals):
         raise click.exceptions.Exit(UNDECIDED)
 

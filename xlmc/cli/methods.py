@@ -9,7 +9,7 @@ import click
 
 from xlmc.cli.blocks import show
 from xlmc.cli.options import FilePath, WholeNumber, functions_option, quiet_option
-from xlmc.cli.study_output import NOT_TO_BE_USED, study_options
+from xlmc.cli.study_output import NOT_TO_BE_USED, end_early, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
 
@@ -91,5 +91,6 @@ def methods(
             say(f"{paragraph(advice)}\n")
         written.print_paths()
     written.check()
+    end_early(found.ended)
     if found.reference.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)

@@ -114,4 +114,4 @@ def screen(
         as_json,
         [f"{report.below.partition(':')[0]}: what it could do without", *report.blocks],
     )
-    conclude(written, found.run)
+    conclude(written, found.run, ended=found.ended)

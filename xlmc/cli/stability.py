@@ -9,7 +9,7 @@ import click
 
 from xlmc.cli.blocks import show
 from xlmc.cli.options import FilePath, WholeNumber, functions_option, jobs_option, quiet_option
-from xlmc.cli.study_output import NOT_TO_BE_USED, STUDY_OF_A_RUN, study_options
+from xlmc.cli.study_output import NOT_TO_BE_USED, STUDY_OF_A_RUN, end_early, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
 
@@ -65,6 +65,7 @@ def stability(
         written.print_paths()
     warnings(found.run.warnings, found.run.refused)
     written.check()
+    end_early(found.ended)
     if found.wrong or found.run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
@@ -72,10 +73,11 @@ def stability(
 def _show(found: Stability, all_cells: bool) -> None:
     from xlmc.outputs.studies.stability import count, sentences
 
-    say(f"{found.run.model.workbook.name}: {count(found.findings)}\n")
+    say(f"{found.run.model.workbook.name}: {count(found)}\n")
     for number, finding in enumerate(found.findings, start=1):
         _show_finding(number, finding)
-    _show_cells(found, all_cells)
+    if found.cells:
+        _show_cells(found, all_cells)
     for sentence in sentences(found):
         say(paragraph(sentence))
 

@@ -10,7 +10,7 @@ import click
 
 from xlmc.cli.blocks import show
 from xlmc.cli.output_options import with_files, with_options
-from xlmc.cli.terminal import say_json
+from xlmc.cli.terminal import INTERRUPTED, say, say_json
 from xlmc.cli.writing import Written, write_files
 
 if TYPE_CHECKING:
@@ -31,6 +31,7 @@ __all__ = [
     "STUDY",
     "STUDY_OF_A_RUN",
     "conclude",
+    "end_early",
     "give_out",
     "study_options",
 ]
@@ -81,22 +82,35 @@ def give_out(
     return written
 
 
-def conclude(written: Written, run: RunResult, doubts: Sequence[str] = ()) -> None:
-    """Print the warnings of a study's run, and end with exit code 1 where there is one.
+def conclude(written: Written, run: RunResult, doubts: Sequence[str] = (), ended: str = "") -> None:
+    """Print the warnings of a study's run, and end with exit code 1 where there is one, with 130 after Ctrl-C.
 
     Args:
         written: the files of the study, whose errors come behind the warnings.
         run: of the book.
         doubts: other reasons why answers must not be used.
+        ended: why the study ended early; empty if it did not.
 
     Raises:
         XlmcError: a file could not be written.
-        Exit: the answers must not be used.
+        Exit: the answers must not be used, or are not all there.
     """
     from xlmc.cli.printing import warnings
 
     reasons = [*run.warnings, *doubts]
     warnings(reasons, run.refused)
     written.check()
+    end_early(ended)
     if reasons:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
+
+
+def end_early(ended: str) -> None:
+    """End with exit code 130 where a study was ended by Ctrl-C.
+
+    Raises:
+        Exit: it was.
+    """
+    if ended:
+        say(f"xlmc: {ended}; what was known by then is what is told.", err=True)
+        raise click.exceptions.Exit(INTERRUPTED)

@@ -6,6 +6,8 @@
    the accepted from a fifth, is the expected cost.
 2. **Verified**, each by a run of its own with the assumption held and the same draws of all others. Correlated ones of
    which one at least is needed alone are also held in groups: two that cancel each other move an answer only apart.
+   Of more than `ALONE` assumptions the cheapest are held at once first, as many as may be, found by halving; these are
+   not run alone.
 3. **Together**: the cheapest that are within the tolerance, as many as still are when held at once. The end is one run
    with all of them held; costs are not added up.
 4. **Filters**, in the same way, on top of it: left out one by one, then together. The cells that only they need are not
@@ -18,13 +20,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from math import log2
 from typing import Final, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.comparison.cost import Cost
-from xlmc.analysis.studies.comparison.differences import acceptance, difference
+from xlmc.analysis.studies.comparison.differences import Difference, acceptance, difference
 from xlmc.analysis.studies.comparison.paired_statistics import Accepted, named_shares
 from xlmc.analysis.studies.comparison.tolerances import (
     Tolerances,
@@ -37,6 +40,7 @@ from xlmc.analysis.studies.comparison.tolerances import (
 )
 from xlmc.analysis.studies.comparison.variations import names_of, with_changes, with_plain_sampling
 from xlmc.analysis.studies.shown import Shown
+from xlmc.analysis.studies.steps import Steps, Tell
 from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
@@ -46,7 +50,17 @@ from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
-__all__ = ["ACCEPTANCE_TOLERANCE", "ENDS", "AtEnds", "Cost", "Expected", "ScreenArguments", "Screening", "screen"]
+__all__ = [
+    "ACCEPTANCE_TOLERANCE",
+    "ALONE",
+    "ENDS",
+    "AtEnds",
+    "Cost",
+    "Expected",
+    "ScreenArguments",
+    "Screening",
+    "screen",
+]
 
 ACCEPTANCE_TOLERANCE: Final = 0.1
 """The change of the share of accepted trials, as a share of it, that counts as none."""
@@ -67,8 +81,10 @@ _RANKED: Final = 8_192
 _FEWEST: Final = 2
 """Values of a forecast: a standard deviation takes so many."""
 
+ALONE: Final = 20
+"""With more assumptions than this, the cheapest are held at once before the others are held one by one."""
+
 Floats = NDArray[np.float64]
-Tell = Callable[[str], None]
 
 
 class ScreenArguments(TypedDict, total=False):
@@ -139,6 +155,9 @@ class Screening(Shown):
         varying: how many then vary.
         runs: how many were made.
         ends: those of `single` that are within the tolerance, held at either end; None if that was not asked.
+        at_once: the cheapest of many, held at once because each is expected to be within; none of them was held alone.
+            None of few assumptions, or where no such group may be held.
+        ended: why it ended before everything was run; empty if it did not.
     """
 
     run: RunResult
@@ -162,6 +181,8 @@ class Screening(Shown):
     varying: int
     runs: int
     ends: tuple[AtEnds, ...] | None = None
+    at_once: Cost | None = None
+    ended: str = ""
 
     @property
     def only_alone(self) -> tuple[str, ...]:
@@ -194,7 +215,8 @@ def screen(
 ) -> Screening:
     """Find which assumptions may be held, and which filters left out, without moving an answer beyond the tolerance.
 
-    The model and its workbook stay as they are. The trials are plain Monte Carlo, whatever its settings say.
+    A first Ctrl-C ends it after the run that is under way, with what is known by then (`Screening.ended`). The model
+    and its workbook stay as they are. The trials are plain Monte Carlo, whatever its settings say.
 
     Args:
         model: to screen.
@@ -210,7 +232,7 @@ def screen(
         seed: of every run.
         engine: of every run.
         jobs: of every run.
-        tell: called before every run with what it is for.
+        tell: called before every run with what it is for, how many are left, and how long they may take.
 
     Raises:
         SimulationError: an argument is out of its range, no name fits a set, or fewer than two trials are accepted, or
@@ -222,14 +244,18 @@ def screen(
     stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, model.forecasts)
     wanted = [names_of(pattern, [a.name for a in model.live], "assumption that is drawn") for pattern in sets]
     asked = [name for text in judged_by for name in names_of(text, [f.name for f in model.forecasts], "forecast")]
-    tell = tell or (lambda _: None)
-    tell("the book as it is")
-    run = simulate(with_plain_sampling(model), trials=trials, seed=seed, engine=engine, jobs=jobs)
-    if run.accepted < 2:
-        message = f"{run.accepted} of {count_text(run.trials)} trials were accepted, too few to compare anything with"
-        raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
-    screened = _Screen(run, stated, chance_of(chance), acceptance_tolerance, engine, jobs, tell, asked)
-    return screened.screening(wanted, ends=ends)
+    with Steps(tell) as steps:
+        steps.begin("the book as it is")
+        run = simulate(with_plain_sampling(model), trials=trials, seed=seed, engine=engine, jobs=jobs)
+        if run.accepted < _FEWEST:
+            message = (
+                f"{run.accepted} of {count_text(run.trials)} trials were accepted, too few to compare anything with"
+            )
+            raise SimulationError(
+                message, hint="run more trials, or see whether the filters contradict the assumptions"
+            )
+        screened = _Screen(run, stated, chance_of(chance), acceptance_tolerance, engine, jobs, steps, asked)
+        return screened.screening(wanted, ends=ends)
 
 
 class _Screen:
@@ -243,11 +269,11 @@ class _Screen:
         acceptance_tolerance: float,
         engine: str | None,
         jobs: int,
-        tell: Tell,
+        steps: Steps,
         asked: Sequence[str],
     ) -> None:
         self._run, self._chance, self._acceptance_tolerance = run, chance, acceptance_tolerance
-        self._engine, self._jobs, self._tell = engine, jobs, tell
+        self._engine, self._jobs, self._steps = engine, jobs, steps
         self._accepted = {f.name: Accepted.of_run(run, f.name) for f in run.model.forecasts}
         wanted = [f for f in run.model.forecasts if not asked or f.name in asked]
         self._unasked = tuple(f.name for f in run.model.forecasts if f not in wanted)
@@ -266,23 +292,35 @@ class _Screen:
             for f in self._judged
         }
         self._runs = 1
+        self._as_it_is: dict[str, Difference] = {}
+        self._every: dict[str, _Every] = {}
 
     def screening(self, sets: Sequence[tuple[str, ...]], *, ends: bool) -> Screening:
         model = self._run.model
+        self._steps.begin("what the accepted trials tell")
         freezable = [a for a in model.live if a.base is not None]
         expected = sorted((Expected(a.name, self._expect_cost(a)) for a in freezable), key=lambda each: each.size)
-        single = tuple(self._freeze([each.name]) for each in expected)
-        groups = tuple(map(self._freeze, self._correlated(single)))
-        joint = self._together((*single, *groups), self._freeze)
+        self._steps.can_end()
+        further = len(sets) + len(model.filters) + (2 * len(freezable) if ends else 0)
+        at_once = None if ends or len(expected) <= ALONE else self._at_once(expected, further)
+        alone = [each for each in expected if at_once is None or each.name not in at_once.names]
+        self._steps.expect(len(alone) + int(log2(len(alone) + 1)) + further)
+        single = tuple(self._freeze([each.name]) for each in self._steps.each(alone))
+        correlated = self._correlated(single, at_once.names if at_once else ())
+        self._steps.expect(len(correlated) + int(log2(len(alone) + 1)) + further)
+        groups = tuple(self._freeze(names) for names in self._steps.each(correlated))
+        joint = self._together((*([at_once] if at_once else []), *single, *groups), self._freeze)
         frozen = joint.names if joint else ()
+        self._steps.expect(further)
 
         def left_out(names: Sequence[str]) -> Cost:
             return self._cost(names, frozen, names, f"without {_names_text(names)}")
 
-        filters = tuple(left_out([f.name]) for f in model.filters)
+        filters = tuple(left_out([f.name]) for f in self._steps.each(model.filters))
         reduced = self._together(filters, left_out)
-        alone = [cost.names[0] for cost in single if cost.judgement.verdict is Verdict.WITHIN]
-        at_ends = tuple(self._at_ends(name) for name in alone) if ends else None
+        within = [cost.names[0] for cost in single if cost.judgement.verdict is Verdict.WITHIN]
+        self._steps.expect(len(sets) + (2 * len(within) if ends else 0))
+        at_ends = tuple(self._at_ends(name) for name in self._steps.each(within)) if ends else None
         before = model.needed.graph
         after = with_changes(model, frozen=frozen, without=reduced.names if reduced else ()).needed.graph
         return Screening(
@@ -298,7 +336,7 @@ class _Screen:
             single=single,
             groups=groups,
             joint=joint,
-            sets=tuple(self._freeze(names) for names in sets),
+            sets=tuple(self._freeze(names) for names in self._steps.each(sets)),
             filters=filters,
             reduced=reduced,
             constant=tuple(c for c in sorted(after.formulas) if c in before.varying and c not in after.varying),
@@ -307,7 +345,23 @@ class _Screen:
             varying=sum(cell in after.varying for cell in after.formulas),
             runs=self._runs,
             ends=at_ends,
+            at_once=at_once,
+            ended=self._steps.why_ended,
         )
+
+    def _at_once(self, expected: Sequence[Expected], further: int) -> Cost | None:
+        """Hold as many of the cheapest at once as may be, found by halving, from those that the ranking expects."""
+        best, low, high = None, 1, len(expected)
+        length = min(max(sum(each.size <= 1.0 for each in expected), 2), high)
+        while low < high and not self._steps.ended:
+            self._steps.expect(int(log2(high - low)) + 1 + len(expected) - low + further)
+            cost = self._freeze([each.name for each in expected[:length]])
+            if cost.judgement.verdict is Verdict.WITHIN:
+                best, low = cost, length
+            else:
+                high = length - 1
+            length = (low + high + 1) // 2
+        return best
 
     def _at_ends(self, name: str) -> AtEnds:
         low, high = (float(end) for end in np.quantile(self._run.prior[name], ENDS, method="inverted_cdf"))
@@ -329,7 +383,7 @@ class _Screen:
         frozen_at: Mapping[str, float] | None = None,
     ) -> Cost:
         """Run the book with a change, over the same trials."""
-        self._tell(purpose)
+        self._steps.begin(purpose)
         self._runs += 1
         model = with_changes(self._run.model, frozen=frozen, without=without, frozen_at=frozen_at)
         settings = self._run.settings
@@ -340,16 +394,7 @@ class _Screen:
 
     def _compare(self, names: tuple[str, ...], run: RunResult) -> Cost:
         accepted = acceptance(self._run, run)
-        found = {
-            f.name: difference(
-                self._accepted[f.name],
-                Accepted.of_run(run, f.name),
-                f.central,
-                f.threshold,
-                self._run.results[f.name].form,
-            )
-            for f in self._judged
-        }
+        found = {f.name: self._difference(f, run) for f in self._judged}
         limits = {name: each.tolerances(self._tolerances[name][0], self._chance) for name, each in found.items()}
         sizes = {
             f"{name}, {number}": (change.difference, limits[name][number])
@@ -359,6 +404,22 @@ class _Screen:
         sizes["acceptance"] = accepted.relative, self._acceptance_tolerance
         size = max(in_tolerances(*each) for each in sizes.values())
         return Cost(names, accepted, found, judge(sizes), size)
+
+    def _difference(self, forecast: Forecast, run: RunResult) -> Difference:
+        """Compare a forecast; what the change does not reach, most of the answers of a large book, only once."""
+        name, first = forecast.name, self._accepted[forecast.name]
+
+        def compared(second: Accepted) -> Difference:
+            form = self._run.results[name].form
+            return difference(first, second, forecast.central, forecast.threshold, form)
+
+        own = self._run.forecasts[name]
+        same = np.array_equal(run.trial_index, self._run.trial_index)
+        if first.is_share or not same or not np.array_equal(run.forecasts[name], own, equal_nan=True):
+            return compared(Accepted.of_run(run, name))
+        if name not in self._as_it_is:
+            self._as_it_is[name] = compared(first)
+        return self._as_it_is[name]
 
     def _together(self, single: Sequence[Cost], changed: Callable[[Sequence[str]], Cost]) -> Cost | None:
         """As many of the changes that are within alone as are within together, the cheapest first.
@@ -370,22 +431,23 @@ class _Screen:
             return None
         best, low, high = alone[0], 1, len(alone)
         length = high
-        while low < high:
+        while low < high and not self._steps.ended:
             cost = changed(_all_names(alone[:length]))
             if cost.judgement.verdict is Verdict.WITHIN:
                 best, low = cost, length
             else:
                 high = length - 1
             length = (low + high + 1) // 2
-        for each in alone[low + 1 :]:  # the one after the longest list is known not to fit
+        for each in self._steps.each(alone[low + 1 :]):  # the one after the longest list is known not to fit
             cost = changed(_all_names((best, each)))
             if cost.judgement.verdict is Verdict.WITHIN:
                 best = cost
         return best
 
-    def _correlated(self, single: Sequence[Cost]) -> list[tuple[str, ...]]:
+    def _correlated(self, single: Sequence[Cost], at_once: Sequence[str]) -> list[tuple[str, ...]]:
         """Return groups of correlated assumptions with one at least that cannot be held alone."""
         alone = {cost.names[0]: cost.judgement.verdict is Verdict.WITHIN for cost in single}
+        alone |= dict.fromkeys(at_once, True)
         drawn = np.array([self._run.prior[name][:_RANKED] for name in alone])
         if len(drawn) < 2:
             return []
@@ -408,7 +470,9 @@ class _Screen:
             if shares := self._shares[forecast.name]:
                 sizes.append(_largest_move_of_shares(values, near, shares.values(), tolerance, self._chance))
             else:
-                sizes.append(_largest_move(values, near, forecast, tolerance, self._chance))
+                if forecast.name not in self._every:
+                    self._every[forecast.name] = _Every.of(values, forecast)
+                sizes.append(_largest_move(values, near, self._every[forecast.name], forecast, tolerance, self._chance))
         return max(sizes)
 
 
@@ -439,27 +503,48 @@ def _groups(correlations: Floats) -> list[frozenset[int]]:
     return found
 
 
+@dataclass(frozen=True, slots=True)
+class _Every:
+    """What all values of a forecast are like: `known` are those that are numbers."""
+
+    known: NDArray[np.bool_]
+    mean: float
+    sd: float
+    ends: Floats
+    above: float | None
+
+    @classmethod
+    def of(cls, values: Floats, forecast: Forecast) -> _Every:
+        known = ~np.isnan(values)
+        every = values[known]
+        above = None if forecast.threshold is None else float(np.mean(every > forecast.threshold))
+        return cls(known, every.mean(), every.std(), np.quantile(every, _tails(forecast)), above)
+
+
+def _tails(forecast: Forecast) -> list[float]:
+    return [(1.0 - forecast.central) / 2.0, (1.0 + forecast.central) / 2.0]
+
+
 def _largest_move(
-    values: Floats, near: NDArray[np.bool_], forecast: Forecast, tolerance: float, chance: float | None
+    values: Floats,
+    near: NDArray[np.bool_],
+    every: _Every,
+    forecast: Forecast,
+    tolerance: float,
+    chance: float | None,
 ) -> float:
     """Return the largest move of mean, SD, central range and P(> threshold) from all values to those near, in
     tolerances.
     """
-    known = ~np.isnan(values)
-    every, some = values[known], values[known & near]
-    if some.size < 2:
+    some = values[every.known & near]
+    if some.size < _FEWEST:
         return float("inf")
-    tails = [(1.0 - forecast.central) / 2.0, (1.0 + forecast.central) / 2.0]
-    moves = [
-        some.mean() - every.mean(),
-        some.std() - every.std(),
-        *(np.quantile(some, tails) - np.quantile(every, tails)),
-    ]
+    moves = [some.mean() - every.mean, some.std() - every.sd, *(np.quantile(some, _tails(forecast)) - every.ends)]
     sizes = [in_tolerances(Estimate(float(move)), tolerance) for move in moves]
-    if forecast.threshold is not None:
-        before, after = (float(np.mean(x > forecast.threshold)) for x in (every, some))
-        limit = chance_tolerance(before) if chance is None else chance
-        sizes.append(in_tolerances(Estimate(after - before), limit))
+    if forecast.threshold is not None and every.above is not None:
+        after = float(np.mean(some > forecast.threshold))
+        limit = chance_tolerance(every.above) if chance is None else chance
+        sizes.append(in_tolerances(Estimate(after - every.above), limit))
     return max(sizes)
 
 

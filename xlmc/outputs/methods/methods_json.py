@@ -45,6 +45,7 @@ def study_json(found: Study) -> dict[str, Any]:
         "cheapest": [curve.method.key for curve in best.cheapest] if best else [],
         "methods": [_curve(found, curve) for curve in found.every],
         "not_used": dict(found.absent),
+        "ended_early": found.ended or None,
         "recommendation": recommendation(found),
     }
 

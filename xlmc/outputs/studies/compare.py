@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison.causes import Step
     from xlmc.outputs.study_report import StudyReport
 
+from xlmc.analysis.studies.steps import ended_early
+
 __all__ = ["compare_report"]
 
 
@@ -36,6 +38,8 @@ def _sentences(found: Comparison) -> Iterator[str]:
     from xlmc.outputs.summary import share_text
 
     books, accepted, trials = book_names(found), found.acceptance, found.first.trials
+    if found.ended:
+        yield ended_early("search for causes", found.ended, "Where no cause is named, none was looked for to the end.")
     yield (
         f"Of {count_text(trials)} trials both accept {count_text(accepted.both)}; {books[0]} alone "
         f"{count_text(accepted.first_only)}, "
@@ -92,6 +96,7 @@ def _as_json(found: Comparison) -> dict[str, object]:
     books, inputs = book_names(found), found.inputs
     return {
         "books": books,
+        "ended_early": found.ended or None,
         "fed_by": None if found.source is None else found.source.model.path.name,
         "simpler": None if found.simpler is None else books[found.simpler],
         "trials": found.first.trials,

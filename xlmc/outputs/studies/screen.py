@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from xlmc.outputs.document.parts import Block, Table
     from xlmc.outputs.study_report import StudyReport
 
+from xlmc.analysis.studies.steps import ended_early
+
 __all__ = ["screen_report"]
 
 
@@ -29,9 +31,12 @@ def screen_report(found: Screening) -> StudyReport:
 
 
 def _tables(found: Screening) -> Iterator[Block]:
-    expected = [_size(each.size) for each in found.expected]
-    title = "Each assumption held at its base value, the least expected cost first"
-    yield _table(found, title, found.single, ("Held", _names(found.single)), ("Expected", expected))
+    sizes = {each.name: _size(each.size) for each in found.expected}
+    expected = [sizes[cost.names[0]] for cost in found.single]
+    each = "Each other assumption" if found.at_once else "Each assumption"
+    title = f"{each} held at its base value, the least expected cost first"
+    if found.single:
+        yield _table(found, title, found.single, ("Held", _names(found.single)), ("Expected", expected))
     if found.groups:
         yield _table(found, "Correlated assumptions held at once", found.groups, ("Held", _names(found.groups)))
     if found.sets:
@@ -42,8 +47,9 @@ def _tables(found: Screening) -> Iterator[Block]:
         held = " with the assumptions named above held" if found.joint else ""
         what = "filter and item of evidence" if _has_evidence(found) else "filter"
         yield _table(found, f"Each {what} left out{held}", found.filters, ("Left out", _names(found.filters)))
-    for name in found.tolerances:
-        yield _of_forecast(found, name)
+    if found.single or found.groups or found.sets or found.filters:
+        for name in found.tolerances:
+            yield _of_forecast(found, name)
 
 
 def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> Table:
@@ -161,14 +167,21 @@ def _verdicts(found: Screening) -> Iterable[str]:
     from xlmc.analysis.studies.comparison.verdicts import undecided_text
     from xlmc.montecarlo.statistics.number_text import count_text, styled_text
 
+    if found.ended:
+        yield ended_early("screening", found.ended, "What is not in the tables was not run.")
     if found.joint:
         yield (
             f"Not needed: {'; '.join(found.joint.names)}. With all of them held at their base values in one run, no "
             f"number moves by more than {styled_text(found.joint.size, '.2f')} of its "
             f"tolerance{_acceptance_text(found, found.joint)}."
         )
-    else:
+    elif not found.ended:
         yield "Every assumption is needed, as far as these trials tell."
+    if found.at_once:
+        yield (
+            f"The {count_text(len(found.at_once.names))} assumptions that are expected to cost least were held at "
+            "once, and none of them alone: two of them may cancel each other."
+        )
     if found.only_alone:
         yield f"Within the tolerance alone, but not surely together with those: {'; '.join(found.only_alone)}."
     if found.ends is not None:
@@ -254,6 +267,8 @@ def _as_json(found: Screening) -> dict[str, object]:
         "without_base_value": found.baseless,
         "forecasts_not_asked": found.unasked,
         "forecasts_without_numbers": found.valueless,
+        "ended_early": found.ended or None,
+        "cheapest_held_at_once": None if found.at_once is None else _entry(found.at_once, found),
         "held_alone": [_entry(cost, found) for cost in found.single],
         "correlated_held_at_once": [_entry(cost, found) for cost in found.groups],
         "held_together": None if found.joint is None else _entry(found.joint, found),

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from functools import partial
 from typing import TYPE_CHECKING
 
+from xlmc.analysis.studies.steps import ended_early
 from xlmc.errors import capitalised
 
 if TYPE_CHECKING:
@@ -23,15 +24,16 @@ _LISTED = 20
 _LEVELS = {"WRONG": "Wrong", "DOUBTFUL": "Doubtful", "NOTE": "Note"}
 
 
-def count(findings: Sequence[Finding]) -> str:
-    levels = [finding.level.name for finding in findings]
+def count(found: Stability) -> str:
+    """Say how many findings there are; of a search that was ended early no more than that it had none by then."""
+    levels = [finding.level.name for finding in found.findings]
     counts = {word.lower(): levels.count(level) for level, word in _LEVELS.items() if level in levels}
     parts = [f"{count} {word}{'s' * (word == 'note' and count > 1)}" for word, count in counts.items()]
-    return (
-        f"{len(levels)} finding{'s' * (len(levels) != 1)}: {', '.join(parts)}"
-        if parts
-        else "no finding: no cell loses digits, and none gives a misleading number"
-    )
+    if parts:
+        return f"{len(levels)} finding{'s' * (len(levels) != 1)}: {', '.join(parts)}"
+    if found.ended:
+        return "no finding by the time the search was ended"
+    return "no finding: no cell loses digits, and none gives a misleading number"
 
 
 def stability_report(found: Stability, all_cells: bool = False) -> StudyReport:
@@ -43,9 +45,9 @@ def stability_report(found: Stability, all_cells: bool = False) -> StudyReport:
     findings = [text for number, one in enumerate(found.findings, start=1) for text in _finding_texts(number, one)]
     blocks = blocks_of(
         [
-            f"{count(found.findings).capitalize()}.",
+            f"{count(found).capitalize()}.",
             *findings,
-            cells(found, all_cells),
+            *([cells(found, all_cells)] if found.cells else []),
             *sentences(found),
         ]
     )
@@ -112,6 +114,9 @@ def sentences(found: Stability) -> Iterator[str]:
         "less. Rounding: the largest error by rounding, as a share of the central range or of the value. Excess: how "
         "many times larger that error is than the effect of rounding the assumptions alone; up to 7 in sound formulas."
     )
+    if found.ended:
+        left = ", ".join((*found.not_looked_for, "what every cell amplifies"))
+        yield ended_early("search", found.ended, f"Not looked for: {left}.")
     trials = f"{count_text(found.points)} trial{'s' * (found.points != 1)}"
     yield (
         f"Examined: {trials} of a run of {count_text(found.run.trials)}, seed "
@@ -135,6 +140,7 @@ def _as_json(found: Stability) -> dict[str, object]:
         "recomputed": found.recomputed,
         "findings": [_finding_json(finding) for finding in found.findings],
         "cells": [_cell_json(cell) for cell in found.cells],
+        "ended_early": found.ended or None,
         "unchecked": [{"cell": str(cell), "functions": list(names)} for cell, names in found.unchecked],
     }
 

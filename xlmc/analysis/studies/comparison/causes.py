@@ -6,13 +6,15 @@ These are tried in this order, until the difference is within the tolerance: the
 assumptions that only one draws (held at their base values) and the distributions in which the books differ (the second
 takes the first's); all of these. The cause is then the shortest list of such steps that is found: the most effective
 single steps are added one by one until the difference is within the tolerance, and each step that turns out not to be
-needed is left out again. Where nothing helps, the cause is in the formulas or in values that are held.
+needed is left out again. Of many steps, groups that are not needed are left out before. Where nothing helps, the cause
+is in the formulas or in values that are held.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from typing import Final
 
 import numpy as np
@@ -37,6 +39,9 @@ _SAME: Final = 1e-9
 Floats = NDArray[np.float64]
 
 Run = Callable[[CompiledModel, str], RunResult]
+
+_FEW: Final = 20
+"""Of more steps than this, groups are left out before any is taken alone."""
 
 _KINDS = ("filter", "assumption", "distribution")
 
@@ -226,7 +231,21 @@ def cause_of(steps: Sequence[Step], left: Callable[[Iterable[Step]], float]) -> 
     return ()
 
 
+def _narrowed(tier: Sequence[Step], left: Callable[[Iterable[Step]], float]) -> list[Step]:
+    """Leave out groups of many steps that are not needed: halves first, then smaller ones (Zeller & Hildebrandt 2002,
+    the complements of delta debugging).
+    """
+    found, parts = list(tier), 2
+    while len(found) > _FEW and parts <= len(found):
+        ends = [len(found) * k // parts for k in range(parts + 1)]
+        shorter = (found[:start] + found[end:] for start, end in pairwise(ends))
+        fewer = next((steps for steps in shorter if left(steps) <= 1.0), None)
+        found, parts = (found, 2 * parts) if fewer is None else (fewer, max(parts - 1, 2))
+    return found
+
+
 def _shortest(tier: Sequence[Step], left: Callable[[Iterable[Step]], float]) -> tuple[Step, ...]:
+    tier = _narrowed(tier, left)
     ordered = sorted(tier, key=lambda step: left([step]))
     length = next(n for n in range(1, len(ordered) + 1) if left(ordered[:n]) <= 1.0)
     chosen = ordered[:length]

@@ -27,6 +27,7 @@ from xlmc.analysis.studies.comparison.tolerances import (
 )
 from xlmc.analysis.studies.comparison.variations import with_plain_sampling
 from xlmc.analysis.studies.shown import Shown
+from xlmc.analysis.studies.steps import Steps
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.units import factor_between
@@ -128,6 +129,7 @@ class Comparison(Shown):
         unpaired: for either book, the forecasts without a counterpart.
         runs: how many were made.
         source: the run of the book whose answers feed the second, which is the first with other draws; None elsewhere.
+        ended: why the search for causes ended early; empty if it did not.
     """
 
     first: RunResult
@@ -139,6 +141,7 @@ class Comparison(Shown):
     unpaired: tuple[tuple[str, ...], tuple[str, ...]]
     runs: int
     source: RunResult | None = None
+    ended: str = ""
 
     def of(self, verdict: Verdict) -> tuple[ForecastComparison, ...]:
         """Return the forecasts of which this is the verdict, but for those of which the books are rival models."""
@@ -173,6 +176,8 @@ def compare(
 ) -> Comparison:
     """Run two books of one scene over the same trials, and judge whether their answers agree.
 
+    Once both are run, a first Ctrl-C ends the search for causes (`Comparison.ended`).
+
     An assumption of the same name takes the same random numbers in both. Forecasts are paired by name. The trials are
     plain Monte Carlo, whatever the books' settings say.
 
@@ -192,7 +197,7 @@ def compare(
             it or of its complement, and a tenth of a point at least. The threshold is the first book's; that of the
             second where the first has none.
         causes: look for the cause of what differs; each step is a further run.
-        tell: called before every run with what it is for.
+        tell: called before every run with what it is for, and while the books are run how many are left.
 
     Raises:
         SimulationError: no forecast has a counterpart, a pair has units of two kinds, or an argument is out of its
@@ -201,16 +206,40 @@ def compare(
     first, second = with_plain_sampling(first), with_plain_sampling(second)
     trials = trials or max(model.definitions.settings.trials for model in (first, second))
     seed = first.definitions.settings.seed if seed is None else seed
+    with Steps(tell) as steps:
+        return _compared(first, second, tolerance, pairs, feeds, trials, seed, engine, jobs, chance, causes, steps)
+
+
+class _EndedEarly(Exception):  # noqa: N818 - it is no fault
+    """No further run is to be made."""
+
+
+def _compared(
+    first: CompiledModel,
+    second: CompiledModel,
+    tolerance: Iterable[str] | str,
+    pairs: Mapping[str, str] | None,
+    feeds: Mapping[str, str] | None,
+    trials: int,
+    seed: int,
+    engine: str | None,
+    jobs: int,
+    chance: float | None,
+    causes: bool,
+    steps: Steps,
+) -> Comparison:
     made = 0
 
     def run(model: CompiledModel, purpose: str, keep_inputs: int = 0) -> RunResult:
         nonlocal made
+        if steps.ended:
+            raise _EndedEarly
         made += 1
-        if tell is not None:
-            tell(purpose)
+        steps.begin(purpose)
         return simulate(model, trials=trials, seed=seed, engine=engine, jobs=jobs, keep_inputs=keep_inputs)
 
     source = None
+    steps.expect(3 if feeds else 2)
     if feeds:
         if pairs:
             raise SimulationError("a book that feeds another is not paired with it", hint="leave the pairs out")
@@ -220,6 +249,7 @@ def compare(
     factors = [_factor(*pair) for pair in matched]
     stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, [mine for mine, _ in matched])
     books = run(first, first.path.name), run(second, second.path.name)
+    steps.can_end()
     inputs = inputs_of(*books)
     search = _Search(books, inputs, Variations(*books, run), chance_of(chance), causes and source is None)
     forecasts = tuple(
@@ -238,6 +268,7 @@ def compare(
         unpaired=_unpaired_forecasts(first, second, matched),
         runs=made,
         source=source,
+        ended=steps.why_ended if search.ended else "",
     )
 
 
@@ -254,7 +285,7 @@ class _Search:
     ) -> None:
         self._books, self._variations, self._chance = books, variations, chance
         self._steps = steps_between(inputs, *books) if causes else ()
-        self._causes = causes
+        self._causes, self.ended = causes, False
 
     def compare_pair(self, mine: Forecast, theirs: Forecast, factor: float, stated: Tolerances) -> ForecastComparison:
         found, own = self._difference((), mine, theirs, factor), Accepted.of_run(self._books[0], mine.name)
@@ -266,7 +297,10 @@ class _Search:
         judgement = judge({name: (change.difference, limits[name]) for name, change in found.changes})
         rivals, cause = None if found.shares else self._rivalry(mine, theirs, factor), None
         if judgement.verdict is Verdict.BEYOND and self._causes and rivals is None:
-            cause = self._cause(mine, theirs, factor, limits)
+            try:
+                cause = None if self.ended else self._cause(mine, theirs, factor, limits)
+            except _EndedEarly:
+                self.ended = True
         return ForecastComparison(mine, theirs, factor, tolerance, was_stated, limits, found, judgement, cause, rivals)
 
     def _rivalry(self, mine: Forecast, theirs: Forecast, factor: float) -> Rivalry | None:

@@ -19,6 +19,7 @@ from xlmc.analysis.studies.methods.curve import Curve
 from xlmc.analysis.studies.methods.need import ENGINE_READY, NO_TIME, Choice, Need, Shortfall, choice, shortfall
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO, Sampled
 from xlmc.analysis.studies.methods.study import Study
+from xlmc.analysis.studies.steps import ended_early
 from xlmc.errors import capitalised
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.stating import Kind
@@ -54,7 +55,9 @@ def recommendation(study: Study) -> list[str]:
     left_out = (
         [f"Left out, because no method computes a mean of texts: {'; '.join(study.texts)}."] if study.texts else []
     )
-    return [*warned, *_paragraphs(study), *left_out]
+    few = "Fewer runs were made than were to be, so that errors are known less well."
+    ended = [ended_early("study", study.ended, few)] if study.ended else []
+    return [*warned, *ended, *_paragraphs(study), *left_out]
 
 
 def _paragraphs(study: Study) -> list[str]:

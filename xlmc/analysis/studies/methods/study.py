@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from statistics import median
 from typing import Any, Final
@@ -26,6 +26,7 @@ from xlmc.analysis.studies.methods.optimised import Optimised, widen_bounds
 from xlmc.analysis.studies.methods.sampled import ENGINE_VARIANTS, MONTE_CARLO, SAMPLERS, Sampled
 from xlmc.analysis.studies.methods.surrogate import Surrogate
 from xlmc.analysis.studies.shown import Shown
+from xlmc.analysis.studies.steps import Steps, Tell
 from xlmc.errors import FormulaError, SimulationError
 from xlmc.montecarlo.definitions.amounts import as_tolerance
 from xlmc.montecarlo.definitions.forms import span_text
@@ -61,8 +62,13 @@ _APART: Final = 1_000_000
 
 SLOW: Final = "formulas"
 
-_RUNS_SECONDS, _LEAST_RUNS = 4.0, 6
-"""Seconds for one method and run length, where the number of runs is not given."""
+_RUNS_SECONDS, _LEAST_RUNS, _LEAST_OF_SLOW = 4.0, 6, 3
+"""Seconds for one method and run length, where the number of runs is not given; the fewest runs, and the fewest where
+each takes longer than all should.
+"""
+
+_LEAST_TOLD: Final = 2
+"""Runs of each length, without which there is no error to tell."""
 
 _CLOCKED: Final = 3
 """Runs of an engine of each length: only their seconds matter, because their errors are those of Monte Carlo."""
@@ -72,8 +78,6 @@ _FEW: Final = 8
 
 _PATIENCE: Final = 1.0
 """Seconds of a run that is too long to be repeated."""
-
-Tell = Callable[[str], None]
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -93,6 +97,7 @@ class Study(Shown):
         engines: the same trials as Monte Carlo's, computed by other engines.
         absent: method -> why it could not be used.
         texts: the forecasts whose answers are texts, which are left out.
+        ended: why it ended before all runs were made; empty if it did not.
     """
 
     model: CompiledModel
@@ -107,6 +112,7 @@ class Study(Shown):
     engines: tuple[Curve, ...]
     absent: Mapping[str, str]
     texts: tuple[str, ...] = ()
+    ended: str = ""
 
     @property
     def every(self) -> tuple[Curve, ...]:
@@ -150,6 +156,8 @@ def study(
 ) -> Study:
     """Measure every method on a workbook.
 
+    Once each run length was run twice, a first Ctrl-C ends it with the runs made by then (`Study.ended`).
+
     Args:
         model: the workbook.
         accuracy: of mean, standard deviation and both ends of the central range, that 95 of 100 runs keep: `1%` of
@@ -157,10 +165,10 @@ def study(
         reference_trials: by default a power of two of them, up to 33,554,432, that takes about eight seconds.
         trials: of the longest runs; by default 16,384 times those of the shortest, or what takes two seconds.
         replicates: runs of each length, 2 or more; by default 24, or as many as take a method four seconds, 6 at least.
-        patience: seconds after which one method is not run again at one length, after six runs at least; by default
-            four, or as long as it takes where `replicates` is given.
+        patience: seconds after which one method is not run again at one length, after six runs at least, or three where
+            each takes longer than that; by default four, or as long as it takes where `replicates` is given.
         seed: of the reference; by default the workbook's.
-        tell: called with what is being measured.
+        tell: called with what is being measured, how many steps are left, and how long they may take.
 
     Raises:
         SimulationError: an argument is out of its range, or the reference accepts too few trials.
@@ -170,29 +178,43 @@ def study(
     model = _without_texts(model)
     own = model.definitions.settings.seed if seed is None else seed
     _check(own, replicates, trials, reference_trials, model)
-    tell = tell or (lambda _: None)
-    engine = fastest_engine(model)
-    tell("how fast the workbook is")
+    with Steps(tell) as steps:
+        return _measured(model, wanted, texts, own, reference_trials, trials, replicates, patience, steps)
+
+
+def _measured(
+    model: CompiledModel,
+    wanted: tuple[str, float, bool],
+    texts: tuple[str, ...],
+    own: int,
+    reference_trials: int | None,
+    trials: int | None,
+    replicates: int | None,
+    patience: float | None,
+    steps: Steps,
+) -> Study:
+    engine, most = fastest_engine(model), replicates or REPLICATES
+    steps.begin("how fast the workbook is")
     size, sampling = reference_size(model, engine, own, _REFERENCE_SECONDS)
     size = reference_trials or size
-    tell(f"the reference, {count_text(size)} trials")
+    steps.begin(f"the reference, {count_text(size)} trials")
     reference = reference_of(model, size, sampling, engine, own)
     unfiltered = unfiltered_of(model, reference)
     ladder = ladder_of(model, trials, own, reference.acceptance.value)
     if patience is None:
         patience = _RUNS_SECONDS if replicates is None else np.inf
-    measuring = _Measuring(model, reference, ladder, replicates or REPLICATES, patience, own, tell)
+    measuring = _Measuring(model, reference, ladder, most, patience, own, steps)
     once = measuring.once(ONCE)
     found = measuring.run_drawn(DRAWN, [each for each in ENGINE_VARIANTS if each.engine != SLOW])
     curves = tuple(curve for curve in found if curve.method in DRAWN)
     engines = tuple(curve for curve in found if curve.method not in DRAWN)
     once = tuple(measuring.widen(curve) if curve.ends else curve for curve in once)
-    for variant in ENGINE_VARIANTS:
+    for variant in steps.each(ENGINE_VARIANTS):
         if variant.engine == SLOW:
             engines += measuring.time_slow(variant, next(curve for curve in curves if curve.method is MONTE_CARLO))
-    most = replicates or REPLICATES
     return Study(
-        model, own, wanted, reference, unfiltered, ladder, most, once, curves, engines, measuring.absent, texts
+        model, own, wanted, reference, unfiltered, ladder, most, once, curves, engines, measuring.absent, texts,
+        steps.why_ended,
     )  # fmt: skip
 
 
@@ -274,11 +296,11 @@ class _Measuring:
         replicates: int,
         patience: float,
         seed: int,
-        tell: Tell,
+        steps: Steps,
     ) -> None:
         self._model, self._reference, self._ladder = model, reference, ladder
         self._replicates, self._patience = replicates, patience
-        self._seed, self._tell = seed, tell
+        self._seed, self._steps = seed, steps
         self._extremes: dict[str, dict[str, Extreme]] = {}
         self.absent: dict[str, str] = {}
 
@@ -286,7 +308,7 @@ class _Measuring:
         """Run the methods that give one answer; twice, so that the second run shows what they cost."""
         found = []
         for method in methods:
-            self._tell(method.name)
+            self._steps.begin(method.name)
             first = self._try(method, self._ladder[-1])
             if first is None:
                 continue
@@ -321,11 +343,14 @@ class _Measuring:
         firsts = {method.key: self._try(method, self._ladder[0]) for method in (*methods, *engines)}
         able = [method for method in (*methods, *engines) if firsts[method.key] is not None]
         results: dict[tuple[str, int], list[MethodResult]] = {(m.key, b): [] for m in able for b in self._ladder}
-        for replicate in range(self._replicates):
-            self._tell(
+        self._steps.expect(self._replicates + 1)  # and the slow engine
+        for replicate in self._steps.each(range(self._replicates)):
+            self._steps.begin(
                 f"runs of {count_text(self._ladder[0])} to {count_text(self._ladder[-1])} trials, "
                 f"{replicate + 1} of {self._replicates}"
             )
+            if replicate >= _LEAST_TOLD:
+                self._steps.can_end()
             for number, budget in enumerate(self._ladder):
                 seed = self._seed + 1 + number * _APART + replicate
                 for method in able:
@@ -340,7 +365,9 @@ class _Measuring:
         """Whether there are enough runs of one method and length: as many as wanted, or as their time allows."""
         if engine and len(known) >= _CLOCKED:
             return True
-        return len(known) >= _LEAST_RUNS and sum(result.seconds for result in known) > self._patience
+        spent = sum(result.seconds for result in known)
+        least = _LEAST_RUNS if spent <= len(known) * self._patience else _LEAST_OF_SLOW
+        return len(known) >= least and spent > self._patience
 
     def _run(self, method: Method, budget: int, seed: int) -> MethodResult:
         """One run of a method; one that fails because it has too few accepted trials counts as failed."""
@@ -388,7 +415,7 @@ class _Measuring:
 
     def time_slow(self, engine: Sampled, numpy: Curve) -> tuple[Curve, ...]:
         """Time an engine that is too slow for runs of any length: its time is worked out from a few trials."""
-        self._tell(engine.name)
+        self._steps.begin(engine.name)
         first = self._try(engine, _FEW)
         if first is None:
             return ()

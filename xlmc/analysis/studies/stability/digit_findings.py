@@ -117,6 +117,8 @@ class Stability(Shown):
         unchecked: cells with functions that were not computed again with 50 digits, and these functions.
         points: how many trials were looked at, the base case and the ends of the ranges among them.
         recomputed: how many of these were computed again with 50 digits.
+        ended: why it ended before everything was looked for; empty if it did not.
+        not_looked_for: what it then had not looked for.
     """
 
     run: RunResult
@@ -125,6 +127,8 @@ class Stability(Shown):
     unchecked: tuple[tuple[Cell, Sequence[str]], ...]
     points: int
     recomputed: int
+    ended: str = ""
+    not_looked_for: tuple[str, ...] = ()
 
     @property
     def wrong(self) -> bool:

@@ -15,13 +15,14 @@ from xlmc.analysis.studies.stability.detectors import (
     narrow_filters,
     rounded_angles,
 )
-from xlmc.analysis.studies.stability.digit_findings import Finding, Level, Stability
+from xlmc.analysis.studies.stability.digit_findings import CellDigits, Finding, Level, Stability
 from xlmc.analysis.studies.stability.edges import domain_edges
 from xlmc.analysis.studies.stability.extent import Extent
 from xlmc.analysis.studies.stability.quadrant import lost_quadrants
 from xlmc.analysis.studies.stability.repeated_steps import as_one
 from xlmc.analysis.studies.stability.rounding_errors import cell_digits, lost_digits
 from xlmc.analysis.studies.stability.starts import dependence_on_starts
+from xlmc.analysis.studies.steps import Steps, Tell
 from xlmc.engine.graph.nodes import Apply
 from xlmc.engine.passes.derivatives.sweep import owners
 from xlmc.errors import SimulationError
@@ -33,8 +34,6 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["stability"]
-
-Tell = Callable[[str], None]
 
 _DETECTORS: Final[Mapping[str, Callable[[Case], Iterable[Finding]]]] = {
     "lost quadrants": lost_quadrants,
@@ -61,12 +60,14 @@ def stability(
 ) -> Stability:
     """Look through the cells that a model needs.
 
+    A first Ctrl-C after the run ends it with what was found by then (`Stability.ended`).
+
     Args:
         model: the workbook.
         trials: of the run that is looked at; by default the book's own.
         seed: of it.
         jobs: threads or processes.
-        tell: called with what is being done.
+        tell: called before every step with what it is, how many are left, and how long they may take.
 
     Raises:
         SimulationError: an argument is out of its range.
@@ -75,21 +76,28 @@ def stability(
     if model.definitions.python:
         hint = "Write the model as formulas of a workbook, which can be computed again with 50 digits"
         raise SimulationError("A function of Python has no formulas to look through", where=model.path, hint=hint)
-    tell = tell or (lambda _: None)
     extent = Extent(model)
-    tell("a run")
-    run: RunResult = simulate(model, trials=trials, seed=seed, jobs=jobs)
-    case = Case(extent, run, run.settings.seed)
-    found: list[Finding] = []
-    for name, detector in _DETECTORS.items():
-        tell(name)
-        found += detector(case)
-    tell("what every cell amplifies")
-    cells = tuple(cell_digits(case))
+    with Steps(tell) as steps:
+        steps.begin("a run")
+        run: RunResult = simulate(model, trials=trials, seed=seed, jobs=jobs)
+        case = Case(extent, run, run.settings.seed)
+        steps.can_end()
+        steps.expect(len(_DETECTORS) + 1)
+        found: list[Finding] = []
+        left = dict(_DETECTORS)
+        for name, detector in steps.each(_DETECTORS.items()):
+            steps.begin(name)
+            found += detector(case)
+            del left[name]
+        cells: tuple[CellDigits, ...] = ()
+        if not steps.ended:
+            steps.begin("what every cell amplifies")
+            cells = tuple(cell_digits(case))
+        ended = steps.why_ended if left or not cells else ""
     ranked = sorted(
         as_one(case, _first_causes(case, found), _OF_DIGITS), key=lambda finding: (finding.level, -finding.size)
     )
-    return Stability(run, tuple(ranked), cells, _unchecked_functions(case), case.n, case.recomputed)
+    return Stability(run, tuple(ranked), cells, _unchecked_functions(case), case.n, case.recomputed, ended, tuple(left))
 
 
 _OF_DIGITS: Final = frozenset({"division", "cancellation", "rounding"})

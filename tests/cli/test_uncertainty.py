@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import csv
 import importlib.util
 import json
 import re
@@ -71,3 +72,14 @@ def test_a_book_without_uncertain_assumptions_is_refused_with_the_cure(xlmc, cas
     assert outcome.code == 2
     assert "Uncertain under Kind of uncertainty" in outcome.err
     assert "--uncertain" in outcome.err
+
+
+def test_trials_are_written_with_their_outer_draws(xlmc, book, tmp_path):
+    """Each outer draw has one value of what is uncertain, and as many trials as were asked for."""
+    outcome = xlmc("uncertainty", book, "--outer", "20", "--inner", "30", "--quiet", "-o", tmp_path / "trials.csv")
+    assert outcome.code == 0, outcome.err
+    with open(tmp_path / "trials.csv", encoding="utf-8", newline="") as file:
+        rows = [*csv.DictReader(file)]
+    assert [int(row["Outer draw"]) for row in rows] == [trial // 30 for trial in range(600)]
+    assert len({(row["Outer draw"], row["Mean friction"]) for row in rows}) == 20
+    assert len({row["Friction"] for row in rows}) == 600

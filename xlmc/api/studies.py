@@ -233,8 +233,8 @@ def uncertainty(model: Model, **options: Unpack[UncertaintyArguments]) -> TwoLoo
 
     Args:
         model: with assumptions that are `Uncertain` under `Kind of uncertainty`, or that `uncertain` names.
-        options: `outer`, `inner`, `confidence`, `percents`, `uncertain`, `judged`, `seed`, `engine`, `jobs` and
-            `tell`, which `xlmc.analysis.studies.uncertainty.uncertainty` describes.
+        options: `outer`, `inner`, `confidence`, `percents`, `uncertain`, `judged`, `seed`, `engine`, `jobs`,
+            `keep_trials` and `tell`, which `xlmc.analysis.studies.uncertainty.uncertainty` describes.
 
     Raises:
         SimulationError: an argument is out of its range, or no trial is accepted.

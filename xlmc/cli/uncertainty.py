@@ -44,7 +44,7 @@ __all__ = ["uncertainty"]
 @click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
 @engine_option
 @jobs_option
-@study_options(STUDY)
+@study_options(f"{STUDY}, the accepted trials, each with its outer draw (.csv, .parquet)")
 @quiet_option
 @functions_option
 def uncertainty(
@@ -73,11 +73,12 @@ def uncertainty(
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.studies.uncertainty import uncertainty_report
-    from xlmc.outputs.study_report import Files
+    from xlmc.outputs.study_report import TWO_LOOPS_NOT_KEPT, Files
 
     model = load(book, functions=functions)
     use_number_style(model.definitions.settings.number_style)
-    files = Files((*output, *also), [book], overwrite=overwrite, functions=functions)
+    paths = (*output, *also)
+    files = Files(paths, [book], overwrite=overwrite, functions=functions, of_run=True, not_kept=TWO_LOOPS_NOT_KEPT)
     files.check()
     with step_line(quiet) as tell:
         found = study.uncertainty(
@@ -91,6 +92,7 @@ def uncertainty(
             seed=seed,
             engine=engine,
             jobs=jobs,
+            keep_trials=any(path.suffix.casefold() in (".csv", ".parquet") for path in paths),
             tell=tell,
         )
     report = uncertainty_report(found)

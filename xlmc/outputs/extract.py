@@ -25,13 +25,18 @@ from xlmc.montecarlo.simulation.simulation import TRIAL, assumption_heading, for
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["check_extract_path", "extract", "safe_heading"]
+Values = NDArray[np.float64] | NDArray[np.int64]
+
+__all__ = ["OUTER_DRAW", "check_extract_path", "extract", "safe_heading"]
 
 
 _STARTS_A_FORMULA: Final = ("=", "+", "-", "@", "\t", "\r", "\n", "\uff1d", "\uff0b", "\uff0d", "\uff20")
 """Characters that make a spreadsheet take a CSV field for a formula; the last four in East Asian editions."""
 
 _BEHIND_A_SEPARATOR: Final = re.compile('([;|\t\n]["\\s]*)([=+\\-@\uff1d\uff0b\uff0d\uff20])')
+
+OUTER_DRAW: Final = "Outer draw"
+"""The heading of the column with the outer draw of each trial of two loops, counted from 0."""
 
 _ROW_GROUP: Final = 2 * PART
 
@@ -42,15 +47,16 @@ class Column:
 
     Attributes:
         name: as in `Simulation.frame`.
-        kind: `assumption` or `forecast`.
-        values: `(m,)`, NaN where there is no number; shorter where the draws of later trials were not kept.
+        kind: `outer draw`, `assumption`, `weight` or `forecast`.
+        values: `(m,)`, whole numbers or doubles, NaN where there is no number; shorter where the draws of later trials
+            were not kept.
     """
 
     name: str
     kind: str
     units: str
     cell: str
-    values: NDArray[np.float64]
+    values: NDArray[np.float64] | NDArray[np.int64]
     labels: Sequence[str] | None = None
 
 
@@ -113,9 +119,14 @@ def _writer(path: Path) -> Callable[[RunResult, BinaryIO, str | None], None]:
 
 
 def _columns(simulation: RunResult) -> list[Column]:
-    """Assumptions, then forecasts."""
+    """In two loops the outer draw; assumptions, then forecasts."""
     forecasts = {forecast.name for forecast in simulation.model.forecasts}
-    found = [
+    found = []
+    if simulation.plan.outer:
+        names = {*forecasts, *(a.name for a in simulation.model.live)}
+        name = OUTER_DRAW if OUTER_DRAW not in names else f"{OUTER_DRAW} of the trial"
+        found.append(Column(name, "outer draw", "", "", simulation.trial_index // simulation.plan.size))
+    found += [
         Column(assumption_heading(a.name, forecasts), "assumption", a.units, str(a.cell), values)
         for a in simulation.model.live
         for values in [simulation.inputs[a.name]]
@@ -138,7 +149,7 @@ def _columns(simulation: RunResult) -> list[Column]:
 
 def _chunks(
     simulation: RunResult, columns: list[Column], size: int
-) -> Iterator[tuple[NDArray[np.int64], list[NDArray[np.float64]]]]:
+) -> Iterator[tuple[NDArray[np.int64], list[Values]]]:
     """Yield the trials a part at a time, and with them a part of every column, filled up with NaN."""
     index = simulation.trial_index
     for start in range(0, index.size, size):
@@ -148,7 +159,7 @@ def _chunks(
             release(values)
 
 
-def _fill_up(values: NDArray[np.float64], size: int) -> NDArray[np.float64]:
+def _fill_up(values: Values, size: int) -> Values:
     if values.size == size:
         return values
     return np.concatenate([values, np.full(size - values.size, np.nan)])
@@ -170,12 +181,18 @@ def _write_csv(simulation: RunResult, file: BinaryIO, command: str | None) -> No
         text.detach()  # flushed, and not closed
 
 
-def _fields(values: NDArray[np.float64], labels: Sequence[str] | None) -> list[float | str]:
+def _fields(values: Values, labels: Sequence[str] | None) -> list[float | str]:
     """Numbers, which the writer gives their shortest exact text, or texts; nothing where there is none."""
     found: list[Any] = values.tolist()
     if labels is not None:
         return ["" if value != value else safe_heading(labels[int(value)]) for value in found]
     return ["" if value != value else value for value in found] if np.isnan(values).any() else found
+
+
+def _parquet_type(pa: Any, column: Column) -> Any:
+    if column.labels is not None:
+        return pa.string()
+    return pa.int64() if column.values.dtype.kind == "i" else pa.float64()
 
 
 def _write_parquet(simulation: RunResult, file: BinaryIO, command: str | None) -> None:
@@ -188,7 +205,7 @@ def _write_parquet(simulation: RunResult, file: BinaryIO, command: str | None) -
     fields += [
         pa.field(
             each.name,
-            pa.float64() if each.labels is None else pa.string(),
+            _parquet_type(pa, each),
             metadata={"kind": each.kind, "units": each.units, "cell": each.cell},
         )
         for each in columns

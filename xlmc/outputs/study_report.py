@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.exact_book import ExactBook
 
-__all__ = ["Files", "StudyReport", "book_parts"]
+__all__ = ["TWO_LOOPS_NOT_KEPT", "Files", "StudyReport", "book_parts"]
 
 _DOCUMENTS: Final = (".pdf", ".docx")
 _ENDINGS: Final = (".xlsx", ".html", ".htm", *_DOCUMENTS, ".json")
@@ -65,6 +65,13 @@ class StudyReport:
             return self.as_json()
 
 
+TWO_LOOPS_NOT_KEPT: Final = (
+    "The command gives the same trials again, to the last bit; a .csv or .parquet file has them, each with its outer "
+    "draw"
+)
+"""What to do instead of keeping a run in two loops."""
+
+
 class Files:
     """The files that a report is written to, each by its ending.
 
@@ -73,6 +80,7 @@ class Files:
         sources: the workbooks that were studied, which are never written to.
         overwrite: replace files that are not ours, too.
         of_run: the study has a run, whose trials can be written, and which can be saved.
+        not_kept: what to do instead of saving a run that cannot be; empty where it can.
         drawn: the study has a figure, which matplotlib draws.
         functions: a person's own, whose file is never written to either.
     """
@@ -84,12 +92,14 @@ class Files:
         *,
         overwrite: bool,
         of_run: bool = False,
+        not_kept: str = "",
         drawn: bool = False,
         functions: OwnFunctions | None = None,
     ) -> None:
         self._read = (*sources, *(() if functions is None else (functions.path,)))
         self._paths, self._sources, self._overwrite, self._drawn = paths, sources, overwrite, drawn
-        self._endings = (*([_PICTURE] if drawn else []), *_ENDINGS, *(_OF_RUN if of_run else ()))
+        runs = () if not of_run else _OF_RUN[:2] if not_kept else _OF_RUN
+        self._endings, self._not_kept = (*([_PICTURE] if drawn else []), *_ENDINGS, *runs), not_kept
 
     @property
     def show_figures(self) -> bool:
@@ -106,6 +116,8 @@ class Files:
         """
         refuse_same_file(self._paths)
         for path in self._paths:
+            if self._not_kept and path.suffix.casefold() == _OF_RUN[-1]:
+                raise WorkbookError("This run cannot be kept", where=path, hint=self._not_kept)
             refuse_other_ending(path, self._endings)
             if path.suffix.casefold() in _DOCUMENTS:
                 from xlmc.outputs.document import check_report_path
@@ -157,6 +169,9 @@ class Files:
             return keep(run, path, overwrite=self._overwrite)
         from xlmc.outputs.extract import extract
 
+        if run.plan.outer and run.kept_inputs < run.accepted:
+            hint = "Give keep_trials=True to xlmc.uncertainty"
+            raise WorkbookError("The draws of the trials were not kept", where=path, hint=hint)
         return extract(run, path, overwrite=self._overwrite)
 
 

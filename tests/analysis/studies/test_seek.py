@@ -82,7 +82,7 @@ def test_the_curve_passes_the_value(book):
         (("Model!B1", 0, "Model!B1"), None),
         (("B3", 0, "Model!B1"), "'B3' names no sheet"),
         (("Nowhere!B3", 0, "Model!B1"), "Nowhere"),
-        (("speed", 0, "Model!B1"), "'speed' is neither a cell nor a defined name"),
+        (("speed", 0, "Model!B1"), "'speed' names no cell"),
     ],
 )
 def test_cells_that_are_none_are_refused(book, arguments, message):
@@ -116,3 +116,16 @@ def test_assumptions_stand_at_their_base_values_and_may_be_varied(tmp_path):
     workbook_of(sheets, {"xlmc_assumptions": "Inputs!A1:D3", "xlmc_forecasts": "Model!A1:B2"}).save(path)
     assert xlmc.seek(path, "Model!B2", 12, "Inputs!B3").values == pytest.approx([6])
     assert xlmc.seek(path, "Model!B2", 12, "Inputs!B6").values == pytest.approx([2])
+
+
+def test_rows_of_tables_are_named_as_well(tmp_path):
+    sheets = {
+        "In": [["Name", "Value", "Low", "High"], ["Wet drag", 0.5, 0, 1]],
+        "Out": [["Name", "Value"], ["Speed", "=In!B2*8"]],
+    }
+    path = tmp_path / "rows.xlsx"
+    workbook_of(sheets, {"xlmc_assumptions": "In!A1:D2", "xlmc_forecasts": "Out!A1:B2"}).save(path)
+    found = xlmc.seek(path, "speed", 2, "Wet drag", low=0, high=1)
+    assert (str(found.cell), str(found.by), found.value) == ("Out!B2", "In!B2", 0.25)
+    with pytest.raises(DefinitionError, match="Did you mean Speed"):
+        xlmc.seek(path, "Sped", 2, "Wet drag")

@@ -27,6 +27,7 @@ from xlmc.montecarlo.definitions.cell_references import cell_of_reference, is_ad
 from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
 from xlmc.montecarlo.definitions.forms import Form
+from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.cell_forms import forms_of
 from xlmc.montecarlo.model.labels import calculate_labels
 from xlmc.montecarlo.model.solving import unknown_of, with_solved_cells
@@ -106,9 +107,9 @@ def seek(
 
     Args:
         path: of the workbook, which need not have any table of xlmc.
-        cell: the one with a formula, `Model!D9` or a defined name.
+        cell: the one with a formula: `Model!D9`, a defined name, or the name of a forecast.
         to: what it is to be.
-        by: the one to vary, without a formula; it may be an assumption.
+        by: the one to vary, without a formula; it may be an assumption or a decision, also by its name.
         low: the least value of that; it comes with `high`. Without them the search goes outwards from its own value.
         high: the largest one.
         functions: a person's own, which formulas may call.
@@ -121,11 +122,11 @@ def seek(
     """
     _check(to, low, high)
     workbook = calculate_labels(read_workbook(path, functions=functions))
-    wanted, unknown = (_cell(workbook, text) for text in (cell, by))
+    definitions = read_definitions(workbook, ENGINES)
+    wanted, unknown = (_cell(workbook, text, definitions) for text in (cell, by))
     if workbook.content(unknown).formula is not None:
         hint = "Name the input that is to be found"
         raise DefinitionError(f"{unknown} holds a formula, and only a cell without one can be varied", hint=hint)
-    definitions = read_definitions(workbook, ENGINES)
     definitions = _without(with_solved_cells(workbook, _without(definitions, unknown)), unknown)
     compiled = unknown_of(workbook, definitions, wanted, to, unknown, None, workbook.name)
     given = _bases(definitions, compiled.inputs)
@@ -201,8 +202,8 @@ def _check(to: float, low: float | None, high: float | None) -> None:
         )
 
 
-def _cell(workbook: Workbook, text: str) -> Cell:
-    """Return the cell that a person names.
+def _cell(workbook: Workbook, text: str, definitions: Definitions) -> Cell:
+    """Return the cell that a person names: by its address, a defined name, or the name of a row that has a cell.
 
     Raises:
         DefinitionError: it is none.
@@ -212,7 +213,21 @@ def _cell(workbook: Workbook, text: str) -> Cell:
     if head is None and is_address(tail) and len(workbook.sheets) > 1:
         message = f"{text!r} names no sheet"
         raise DefinitionError(message, where=workbook.name, hint=f"Name it, such as {first}!{tail.upper()}")
-    return cell_of_reference(workbook, text.strip().removeprefix("="), first, Cell(first, 1, 1))
+    rows = [(each.name, each.cell) for each in definitions.forecasts]
+    rows += [(each.name, each.cell) for each in definitions.assumptions]
+    rows += [(each.name, each.cell) for each in definitions.decisions]
+    named = {name_key(name): cell for name, cell in reversed(rows) if isinstance(cell, Cell)}
+    try:
+        return cell_of_reference(workbook, text.strip().removeprefix("="), first, Cell(first, 1, 1))
+    except DefinitionError as error:
+        found = named.get(name_key(text))
+        if found is None:
+            message, hint = f"{text!r} names no cell", error.hint
+            known = did_you_mean(text, [name for name, _ in rows])
+            if "did you mean" in known.casefold():
+                hint = known
+            raise DefinitionError(message, where=workbook.name, hint=hint) from error
+        return found
 
 
 def _without(definitions: Definitions, unknown: Cell) -> Definitions:

@@ -94,6 +94,7 @@ class UncertaintyArguments(TypedDict, total=False):
     seed: int | None
     engine: str | None
     jobs: int
+    keep_trials: bool
     tell: Tell | None
 
 
@@ -215,6 +216,7 @@ def uncertainty(
     seed: int | None = None,
     engine: str | None = None,
     jobs: int = 1,
+    keep_trials: bool = False,
     tell: Tell | None = None,
 ) -> TwoLoops:
     """Draw what is uncertain in an outer loop and what varies in an inner one, and find the bands of each answer.
@@ -233,6 +235,7 @@ def uncertainty(
         seed: of the run; as in `Model.simulate`, like what follows.
         engine: of the run.
         jobs: of the run.
+        keep_trials: keep the draws of all trials, so that these can be saved as a table.
         tell: called before the run with what it is for.
 
     Raises:
@@ -247,7 +250,12 @@ def uncertainty(
     if tell is not None:
         tell(f"{count_text(outer)} outer draws, {count_text(inner)} trials each")
     options = RunOptions.of(
-        trials=outer * inner, seed=seed, engine=engine, jobs=jobs, evidence="rejection", keep_inputs=0
+        trials=outer * inner,
+        seed=seed,
+        engine=engine,
+        jobs=jobs,
+        evidence="rejection",
+        keep_inputs=None if keep_trials else 0,
     )
     run = run_model(with_plain_sampling(model), options, plan=plan)
     if not run.accepted:

@@ -236,6 +236,7 @@ class _Pass:
             area_of(found.get("ref"), self._sheet, "a data table"),
             tuple(Cell(area.sheet, area.top, area.left) for area in cells),
             two_inputs=is_true(found.get("dt2D", "0")),
+            by_row=is_true(found.get("dtr", "0")),
         )
 
     def _array(self, text: str) -> Formula:

@@ -148,13 +148,33 @@ class DataTable:
 
     Attributes:
         area: the cells that it fills; no formula of their own stands in them.
-        inputs: the cells that it puts values into; none of one that was deleted.
+        inputs: the cells that it puts values into; none of one that was deleted. Of two the first takes the values of
+            the row above.
         two_inputs: one value from the row above and one from the column on the left, for the formula in the corner.
+        by_row: of one input, whether its values stand in the row above, and the formulas in the column on the left.
     """
 
     area: Area
     inputs: tuple[Cell, ...] = ()
     two_inputs: bool = False
+    by_row: bool = False
+
+    def formula_of(self, cell: Cell) -> Cell:
+        """Return the cell with the formula that is computed for a cell of the table."""
+        above, left = self.area.top - 1, self.area.left - 1
+        if self.two_inputs:
+            return Cell(cell.sheet, above, left)
+        return Cell(cell.sheet, cell.row, left) if self.by_row else Cell(cell.sheet, above, cell.column)
+
+    def values_of(self, cell: Cell) -> tuple[Cell, ...]:
+        """Return the cells whose values are put into the inputs for a cell of the table."""
+        above, left = (
+            Cell(cell.sheet, self.area.top - 1, cell.column),
+            Cell(cell.sheet, cell.row, self.area.left - 1),
+        )
+        if self.two_inputs:
+            return above, left
+        return (above,) if self.by_row else (left,)
 
     def margins(self) -> Iterator[Cell]:
         """Yield the cells above it and on its left: the formulas it computes, and the values that it puts in."""

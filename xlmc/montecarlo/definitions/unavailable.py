@@ -55,7 +55,7 @@ def remark_on_tables(tables: Iterable[DataTable], of_run: TablesOfRun, findings:
         else:
             message = "a what-if data table: its cells are kept at the values Excel last calculated"
         if table in of_run.varying and table not in of_run.stale:
-            message += " for the base case, and no forecast and no filter may depend on them"
+            message += " for the base case; where a forecast or filter needs them, they are computed in each trial"
         findings.notice(message, table.area)
 
 
@@ -88,10 +88,10 @@ class TablesOfRun:
     """The data tables that depend on the run.
 
     Attributes:
-        stale: those that put values into an assumption, or compute what depends on results of the run. What Excel
-            saved in them belongs to another run.
-        varying: those that would have other values in each trial: the stale ones, and those over a formula that varies
-            with an assumption. What Excel saved in the latter belongs to the base case, as in every other cell.
+        stale: those that compute what depends on results of the run. What Excel saved in them belongs to another run.
+        varying: those that have other values in each trial: the stale ones, and those over a formula that varies with
+            an assumption, or that put values into one. What Excel saved in the latter belongs to the base case, as in
+            every other cell.
     """
 
     stale: tuple[DataTable, ...] = ()
@@ -119,7 +119,7 @@ def tables_of_run(
     every = frozenset(drawn).union(results)
     upstream = _Upstream(workbook, every, rewritten)
     varying = _closed(upstream, every, every)
-    stale = _closed(upstream, every, frozenset(results))
+    stale = _closed(upstream, frozenset(results), frozenset(results))
     return TablesOfRun(tuple(stale), tuple(varying))
 
 

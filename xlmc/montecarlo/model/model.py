@@ -34,6 +34,7 @@ from xlmc.montecarlo.model.correlating import (
     repair_notices,
     tie_notices,
 )
+from xlmc.montecarlo.model.data_tables import with_data_tables
 from xlmc.montecarlo.model.draw_binding import base_point, draw_of, dynamic_parameters, parameter_target, with_numbers
 from xlmc.montecarlo.model.forecast_filters import (
     FilteringEvaluator,
@@ -89,7 +90,7 @@ class CompiledModel:
     """
 
     def __init__(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
-        definitions = with_solved_cells(workbook, definitions)
+        definitions = with_data_tables(workbook, with_solved_cells(workbook, definitions))
         given, definitions = definitions, with_numbers(workbook, definitions)
         self._folded = definitions is not given
         self._compile(workbook, definitions, path)

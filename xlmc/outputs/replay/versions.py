@@ -244,6 +244,7 @@ RULES: Final = (
     Rule("0.12.0", "a number known before the run is no yes/no answer; of one its share alone is told", _ANY),
     Rule("0.12.0", "pairs of forecasts count a yes/no answer as above its limit where it is a yes", _ANY),
     Rule("0.12.0", "comparisons judge yes/no answers and texts by their shares alone", _ANY),
+    Rule("0.12.0", "data tables over a draw keep the values that Excel calculated", _SHOWN),
     Rule("0.12.0", "adjustment weights of matrices of rank correlations are honoured", _calls("RiskCorrmat")),
 )
 """The rules in the order of versions."""

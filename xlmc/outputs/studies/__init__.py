@@ -39,7 +39,8 @@ class StudyDocuments:
 
         with in_style(_style(found)):
             report = _report(found)
-            said = [f"{report.title}. {report.below}."]
+            end = "" if report.title.endswith(("?", "!", ".")) else "."
+            said = [f"{report.title}{end} {report.below}."]
             for block in report.blocks:
                 if isinstance(block, Paragraph):
                     said.append(block.text)
@@ -58,12 +59,20 @@ class StudyDocuments:
 
     def save(self, found: Shown, path: Path, *, overwrite: bool) -> Path:
         """Write the report; `Shown.save` says what that may raise."""
-        from xlmc.outputs.study_report import Files
+        from xlmc.outputs.study_report import TWO_LOOPS_NOT_KEPT, Files
 
-        files = Files([path], _sources(found), overwrite=overwrite)
-        files.check()
         with in_style(_style(found)):
-            for _, write in files.writers(_report(found)):
+            report = _report(found)
+            in_loops = report.run is not None and bool(report.run.plan.outer)
+            files = Files(
+                [path],
+                _sources(found),
+                overwrite=overwrite,
+                of_run=report.run is not None,
+                not_kept=TWO_LOOPS_NOT_KEPT if in_loops else "",
+            )
+            files.check()
+            for _, write in files.writers(report):
                 path = write()
         return path
 

@@ -27,7 +27,7 @@ def uncertainty_report(found: TwoLoops) -> StudyReport:
     )
     blocks = blocks_of([*_sentences(found), *_tables(found), *_meaning(found)])
     title = "How uncertain are the distributions of the answers?"
-    return StudyReport(title, below, blocks, "Uncertainty", partial(_as_json, found))
+    return StudyReport(title, below, blocks, "Uncertainty", partial(_as_json, found), found.run)
 
 
 def _sentences(found: TwoLoops) -> Iterator[str]:

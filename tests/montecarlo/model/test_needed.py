@@ -6,7 +6,8 @@ from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import formula_text
 from xlmc.montecarlo.definitions.definitions import Filter
-from xlmc.montecarlo.model.needed import filter_condition, find_needed
+from xlmc.montecarlo.definitions.evidence import Bell
+from xlmc.montecarlo.model.needed import accepted_by_chance, filter_condition, find_needed
 
 CELLS = {"A1": 1.0, "A2": 2.0, "A3": 3.0, "A4": 4.0, "B1": "=A1+A2", "B2": "=A3*2", "B3": "=B2+A4", "C1": "=B1>0"}
 UNIT = {"low": 0, "high": 1}
@@ -135,3 +136,19 @@ def test_a_needed_circle_of_cells_is_listed(scene):
 def test_what_a_filter_asks(limits, asked):
     cell = Cell("S", 1, 2)
     assert formula_text(filter_condition(Filter("f", cell, cell, **limits))) == asked
+
+
+@pytest.mark.parametrize(
+    ("bell", "chance", "asked"),
+    [
+        (Bell(1.0, 2.0), None, "(CHANCE>0.0)"),
+        (Bell(1.0, 2.0), Cell("S", 9, 9), "(S!I9<=CHANCE)"),
+        (Bell(1.0, 2.0, sides=(True, False)), Cell("S", 9, 9), "(S!I9<=CHANCE)"),
+        (Bell(1.0, 2.0, logarithmic=True), None, "IF(((S!B1+0.0)>0.0),(CHANCE>0.0),FALSE)"),
+        (Bell(1.0, 2.0, logarithmic=True), Cell("S", 9, 9), "IF(((S!B1+0.0)>0.0),(S!I9<=CHANCE),FALSE)"),
+    ],
+)
+def test_trials_are_kept_by_chance(bell, chance, asked):
+    cell = Cell("S", 1, 2)
+    found = formula_text(accepted_by_chance(bell, cell, chance))
+    assert found.replace(formula_text(bell.tree_of_chance(cell)), "CHANCE") == asked

@@ -131,7 +131,7 @@ _ANSWERS = (
         "«1» speed at the impact",
         "[mph|km/h]",
         f"v_throw/efficiency*(1+slowed)*{MPH}",
-        "v/η·(1 + mb/mv)",
+        "v/η·(1 + η·mb/mv)",
         "A vehicle is never slower than the body that it throws.",
         Role.ANSWER,
         "0.00",

@@ -128,11 +128,11 @@ ON_THE_WAY = (
 
 SHARED_MOMENTUM = Equation(
     "slowed",
-    "mb/mv",
-    "Share of its speed that the vehicle gave to the body",
+    "η·mb/mv",
+    "Share of its speed after the impact that the vehicle gave to the body",
     "",
-    "IF(AND(N(w_body)>0,N(w_vehicle)>0),w_body/w_vehicle,0)",
-    "momentum",
+    "IF(AND(N(w_body)>0,N(w_vehicle)>0),efficiency*w_body/w_vehicle,0)",
+    "momentum: mv·V = mv·V′ + mb·vp, vp = η·V′",
     "η is the body's speed over that of the vehicle after the impact; before it the vehicle had this share more.",
     number_format="0.0000",
 )

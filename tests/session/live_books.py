@@ -166,6 +166,51 @@ def book_of_readings(path, readings=READINGS, trials=4_000):
     return path
 
 
+def book_of_decisions(path, trials=2_000):
+    """A workbook of two decisions, one of which a parameter reads, a solved cell, three answers and a filter."""
+    book = openpyxl.Workbook()
+    model, sheet = book.active, book.create_sheet("T")
+    model.title = "M"
+    cells = {"A1": 1.5, "A2": 0.7, "A3": 50.0, "A4": 10.0, "A5": 40.0, "C1": 2.0}
+    cells |= {"B1": "=A4*A1+A4*A4/(2*9.81*A2)", "B2": "=A3-B1", "B3": "=A3/3.6*A1"}
+    for cell, value in cells.items():
+        model[cell] = value
+    tables = {
+        "xlmc_assumptions": [
+            ["Name", "Cell", "Distribution", "Low", "High", "Units", "Frozen"],
+            ["reaction", "=M!A1", "Uniform", 1.0, 2.0, "s", None],
+            ["friction", "=M!A2", "Uniform", 0.6, "=M!C1*0.4", None, None],
+        ],
+        "xlmc_forecasts": [
+            ["Name", "Cell", "Units"],
+            ["margin", "=M!B2", "m"],
+            ["way", "=M!B3", "m"],
+            ["speed", "=M!A4", "m/s"],
+        ],
+        "xlmc_filters": [["Name", "Cell", "At least", "At most", "Use"], ["possible", "=M!B3", 5.0, 25.0, None]],
+        "xlmc_decisions": [
+            ["Name", "Cell", "Low", "High", "Step", "Values", "Units"],
+            ["limit", "=M!A3", 30.0, 70.0, 10.0, None, "km/h"],
+            ["grip", "=M!C1", None, None, None, "1.9; 2; 2.5", None],
+        ],
+        "xlmc_solve": [
+            ["Name", "Cell", "To", "By", "Low", "High", "Root"],
+            ["stops", "=M!B1", 40.0, "=M!A4", 0.0, "=M!A5", "last"],
+        ],
+        "xlmc_settings": [["Setting", "Value"], ["Trials", trials]],
+    }
+    top = 1
+    for name, lines in tables.items():
+        for row, line in enumerate(lines, start=top):
+            for column, value in enumerate(line, start=1):
+                sheet.cell(row, column, value)
+        bottom = top + len(lines) - 1
+        sheet.add_table(Table(displayName=name, ref=f"A{top}:{chr(64 + len(lines[0]))}{bottom}"))
+        top = bottom + 2
+    book.save(path)
+    return path
+
+
 def with_column(path, target, heading):
     """The workbook with one more column in its table of assumptions."""
     book = openpyxl.load_workbook(path)

@@ -32,8 +32,8 @@ PATIENCE = 120.0
 
 TABS = ("charts", "matters", "pairs", "tables", "scenarios", "studies")
 KINDS = (
-    "move move move hold numbers freeze band limit limit reading state use run type reset keep keep drop show undo"
-    " variants compare view view pin stop print save book book reload restart restore burst"
+    "move move move hold numbers freeze band limit limit reading state use tie decide solve run type reset keep keep"
+    " drop show undo variants compare view view pin stop print save book book reload restart restore burst"
 )
 """What a client does next; twice what is done more often."""
 
@@ -55,7 +55,11 @@ HEADINGS = (
 
 
 class Book:
-    """A workbook of five assumptions, two answers, two filters and two rows of evidence, that is changed at random."""
+    """A workbook that is changed at random.
+
+    It has five assumptions of which some are correlated, three answers, two filters, two rows of evidence, a decision,
+    and a cell that is solved for.
+    """
 
     def __init__(self, path, dice):
         self.path, self.dice, self.names = path, dice, iter(range(1, 10**9))
@@ -65,6 +69,8 @@ class Book:
             ["camera", "=M!B1", 30.0, "Uniform", 25.0, None, None],
             ["witness", "=M!B2", 40.0, "Normal", None, 25.0, None],
         ]
+        self.ties = {(1, 2): 0.5, (3, 4): -0.3}
+        self.decided, self.target = 1.0, 20.0
         self.write()
 
     def row(self, cell):
@@ -76,7 +82,8 @@ class Book:
         model.title = "M"
         for cell in range(1, 6):
             model.cell(cell, 1, 6.0)
-        model["B1"], model["B2"] = "=A1+A2*A3/6+A4", "=A4*A5"
+        model["B1"], model["B2"], model["B3"] = "=A1+A2*A3/6+A4", "=A4*A5*C1", "=A1+2*C2"
+        model["C1"], model["C2"] = self.decided, 7.0
         rows = [HEADINGS]
         for each in self.rows:
             low, high = each["low"], each["low"] + 2.0
@@ -92,14 +99,24 @@ class Book:
                 ["Name", "Cell", "Threshold", "Range %"],
                 ["sum", "=M!B1", None, None],
                 ["product", "=M!B2", 40.0, 90.0],
+                ["needed", "=M!C2", None, None],
             ],
             "xlmc_filters": [["Name", "Cell", "At least", "At most", "Use"], *self.filters],
             "xlmc_evidence": [
                 ["Name", "Cell", "Reading", "Error", "Plus or minus", "Std dev", "Use"],
                 *self.evidence,
             ],
+            "xlmc_decisions": [["Name", "Cell", "Low", "High", "Step"], ["factor", "=M!C1", 0.8, 1.2, 0.1]],
+            "xlmc_solve": [
+                ["Name", "Cell", "To", "By", "Low", "High"],
+                ["goal", "=M!B3", self.target, "=M!C2", 0.0, 20.0],
+            ],
             "xlmc_settings": [["Setting", "Value"], ["Trials", 1_000]],
         }
+        names = {each["cell"]: each["name"] for each in self.rows}
+        tied = [[names[a], names[b], value] for (a, b), value in self.ties.items() if {a, b} <= names.keys()]
+        if tied:
+            tables["xlmc_correlations"] = [["First", "Second", "Correlation"], *tied]
         top = 1
         for name, lines in tables.items():
             for number, line in enumerate(lines):
@@ -121,7 +138,23 @@ class Book:
         """Change one thing of it, as a person or a program does; in the end the file is whole and good."""
         dice, row = self.dice, self.dice.choice(self.rows)
         match dice.choice(
-            ("rename", "remove", "kind", "range", "filter", "reading", "half", "wrong", "gone", "lock", "junk", "use")
+            (
+                *(
+                    "rename",
+                    "remove",
+                    "kind",
+                    "range",
+                    "filter",
+                    "reading",
+                    "half",
+                    "wrong",
+                    "gone",
+                    "lock",
+                    "junk",
+                    "use",
+                ),
+                *("tie", "decide", "solve"),
+            )
         ):
             case "rename":
                 row["name"] = f"input {next(self.names)}"
@@ -135,6 +168,12 @@ class Book:
                 self.filters[0][2] = round(dice.uniform(0.0, 15.0), 1)
             case "reading":
                 dice.choice(self.evidence)[2] = round(dice.uniform(20.0, 50.0), 1)
+            case "tie":
+                self.ties[dice.choice([*self.ties])] = round(dice.uniform(-0.9, 0.9), 2)
+            case "decide":
+                self.decided = round(dice.uniform(0.8, 1.2), 2)
+            case "solve":
+                self.target = round(dice.uniform(10.0, 30.0), 1)
             case "use":
                 each = dice.choice([*self.filters, *self.evidence])
                 each[-1] = dice.choice((None, "no", True))
@@ -270,6 +309,17 @@ class Use:
             name = dice.choice(["sum", "product"])
             key, values = dice.choice([("threshold", ["none", 0.0, 25.0, None]), ("central", [80.0, 100.0, None])])
             self._set(client, "forecast", name, key, dice.choice(values))
+        elif what == "tie" and state["correlations"]:
+            name = dice.choice(state["correlations"])["name"]
+            self._set(
+                client, "correlation", name, "correlation", dice.choice([round(dice.uniform(-1.0, 1.0), 2), None])
+            )
+        elif what == "decide":
+            values = [None, *(round(dice.uniform(0.7, 1.3), 3) for _ in range(5))]
+            self._drag(client, "decision", "factor", "value", dice.sample(values, dice.randint(1, 3)))
+        elif what == "solve":
+            key, least, most = dice.choice([("to", 10.0, 30.0), ("low", 0.0, 6.0), ("high", 8.0, 30.0)])
+            self._set(client, "solve", "goal", key, dice.choice([round(dice.uniform(least, most), 2), None]))
         elif what == "type":
             client.say(
                 "set",
@@ -310,7 +360,7 @@ class Use:
                 "chosen": names,
                 "tab": dice.choice(TABS),
                 "first": "sum",
-                "second": row["name"],
+                "second": dice.choice([row["name"], "needed"]),
             }
             client.say("view", **view, fits=dice.random() < 0.2)
         elif what in ("pin", "stop", "compare", "print"):
@@ -335,6 +385,11 @@ class Use:
     def _set(self, client, of, name, key, value, held=False):
         self.seq += 1
         client.say("set", of=of, name=name, key=key, value=value, held=held, seq=self.seq)
+
+    def _drag(self, client, of, name, key, values):
+        """Drag a handle from one value to the next, and let it go."""
+        for left, value in enumerate(values, start=1 - len(values)):
+            self._set(client, of, name, key, value, held=left < 0)
 
     def _undo_and_redo(self, client):
         """Go back some moments, and forth again: then all is as it was."""
@@ -433,7 +488,8 @@ class Use:
                 raise AssertionError((session.adjustments, self.done[-12:])) from error
             expected = build_model(read_workbook(edited.data, "book.xlsx"), self.book.path)
         expected = simulate(expected, evidence=None, trials=session.asked.trials, seed=session.asked.seed)
-        assert found.trial_index.tobytes() == expected.trial_index.tobytes(), self.done[-12:]
+        same = found.trial_index.tobytes() == expected.trial_index.tobytes()
+        assert same, (session.adjustments, session.asked, self.done[-12:])
         for name, values in expected.forecasts.items():
             assert found.forecasts[name].tobytes() == values.tobytes(), (name, self.done[-12:])
         for client in self.clients:

@@ -13,6 +13,7 @@ import openpyxl
 import pytest
 from live_books import (
     CASE,
+    book_of_decisions,
     book_of_readings,
     change,
     edited,
@@ -34,14 +35,15 @@ from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.outputs.live.adjustments import NONE, Adjustments, adjustments_of, in_words, scenario_of
+from xlmc.outputs.live.adjustments import NONE, PARTS, Adjustments, adjustments_of, in_words, scenario_of
 from xlmc.outputs.live.frames import pair_of
 from xlmc.outputs.live.hand_over import page_of
 from xlmc.outputs.live.jobs import MOVING_TRIALS, Outcome, SupersededError
 from xlmc.outputs.live.kinds import in_kind
 from xlmc.outputs.live.protocol import PageMessage, written
 from xlmc.outputs.live.session import Session
-from xlmc.outputs.live.window_book import assumption_rows, correlation_rows, filter_rows
+from xlmc.outputs.live.what_changed import what_changed
+from xlmc.outputs.live.window_book import assumption_rows, correlation_rows, decision_rows, filter_rows, solve_rows
 
 FRICTION = "Chevrolet post-impact deceleration"
 
@@ -272,8 +274,6 @@ def test_what_was_not_kept_is_offered(case):
 
 
 def test_a_workbook_that_was_saved_keeps_what_was_moved_and_says_what_changed(tmp_path):
-    from xlmc.outputs.live.what_changed import what_changed
-
     path = small(tmp_path / "case.xlsx")
     model = load(path)
     friction, _, distance = (each.name for each in model.assumptions)
@@ -659,6 +659,121 @@ def test_another_correlation_gives_what_the_edited_workbook_gives(tied, tmp_path
     assert not session.adjustments.correlations
 
 
+@pytest.fixture(scope="module")
+def decided(tmp_path_factory):
+    """A workbook of decisions and a solved cell: its file and its model."""
+    path = book_of_decisions(tmp_path_factory.mktemp("decided") / "case.xlsx")
+    return path, load(path)
+
+
+def typed_into(path, target, cells):
+    """The workbook with other contents of some cells of a sheet: name -> content."""
+    book = openpyxl.load_workbook(path)
+    for (sheet, cell), value in cells.items():
+        book[sheet][cell] = value
+    book.save(target)
+    return load(target)
+
+
+@pytest.mark.parametrize(
+    ("of", "name", "key", "value", "cell", "words"),
+    [
+        pytest.param("decision", "limit", "value", 60.0, ("M", "A3"), "limit: value 50 → 60", id="decision"),
+        pytest.param("decision", "grip", "value", 2.5, ("M", "C1"), "grip: value 2 → 2.5", id="one-a-parameter-reads"),
+        pytest.param("solve", "stops", "to", 30.0, ("T", "C18"), "stops: To 40 → 30", id="target"),
+        pytest.param("solve", "stops", "low", 18.0, ("T", "E18"), "stops: Low 0 → 18", id="end-of-the-range"),
+    ],
+)
+def test_a_decision_and_a_solved_cell_give_what_the_edited_workbook_gives(
+    decided, tmp_path, monkeypatch, of, name, key, value, cell, words
+):
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", moving := 1_000)
+    path, model = decided
+    session = Session(model)
+    settle(session)
+    session.receive(change(name, key, value, of=of, held=True))
+    session.receive(change("reaction", "high", 2.2))
+    assert openpyxl.load_workbook(path)[cell[0]][cell[1]].value is not None
+    copy = typed_into(path, tmp_path / "edited.xlsx", {cell: value, ("T", "E2"): 2.2})
+    found = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    expected = simulate(copy, trials=moving, sampling="mc")
+    assert found.trial_index.tobytes() == expected.trial_index.tobytes()
+    settle(session)
+    expected = simulate(copy)
+    assert session.rest.trial_index.tobytes() == expected.trial_index.tobytes()
+    for forecast, values in expected.forecasts.items():
+        assert session.rest.forecasts[forecast].tobytes() == values.tobytes(), forecast
+    assert words in session.at_rest().changes
+    assert page_of(session.at_rest())  # which is of a copy with these changes typed into it, compared to the last bit
+    again = Adjustments.of_json(json.loads(json.dumps(session.adjustments.as_json())))
+    assert again == session.adjustments
+    assert adjustments_of(model.definitions, scenario_of(model.definitions, "kept", again)) == again
+    assert what_changed(model, copy) == ["reaction: High 2 → 2.2", words]
+
+    session.receive(change("friction", "frozen", True))
+    session.receive(change("possible", "at_most", 27.0, of="filter"))
+    session.receive(change("possible", "used", False, of="filter"))
+    settle(session)
+    assert page_of(session.at_rest())
+    session.receive(PageMessage("reset", {"of": of, "name": name}))
+    settle(session)
+    assert not session.adjustments.typed_part()
+    assert page_of(session.at_rest())
+
+
+def test_rows_of_decisions_and_solved_cells(decided):
+    model = decided[1]
+    changed = Adjustments().having("decision", "limit", "value", 60.0).having("solve", "stops", "to", 30.0)
+    limit, grip = decision_rows(model, changed)
+    assert limit["numbers"][0] | {"value": 60.0, "own": 50.0, "cell": "", "drags": True} == limit["numbers"][0]
+    assert (limit["says"], limit["tried"], limit["step"], limit["changed"]) == (
+        "tried: 30 to 70 in steps of 10",
+        [30.0, 40.0, 50.0, 60.0, 70.0],
+        10.0,
+        True,
+    )
+    assert (grip["tried"], grip["step"], grip["changed"]) == ([1.9, 2.0, 2.5], 0.01, False)
+    (stops,) = solve_rows(model, changed)
+    assert [(each["value"], each["cell"]) for each in stops["numbers"]] == [(30.0, ""), (0.0, ""), (None, "T!F18")]
+    assert stops["says"] == "M!A4 is solved for in each trial, so that M!B1 equals To, the last of several values"
+
+
+def test_a_number_that_a_formula_gives_a_solved_cell_cannot_be_typed(decided):
+    session = Session(decided[1])
+    with pytest.raises(XlmcError, match="no solve 'stops' with 'high'"):
+        session.receive(change("stops", "high", 30.0, of="solve"))
+
+
+def test_a_scenario_of_the_workbook_that_decides_is_shown(decided, tmp_path):
+    path, _ = decided
+    book = openpyxl.load_workbook(path)
+    sheet = book.create_sheet("S")
+    for line in (["Name", "M!A3", "stops To"], ["wide", 60.0, 30.0], ["text", "high", None]):
+        sheet.append(line)
+    sheet.add_table(Table(displayName="xlmc_scenarios", ref="A1:C3"))
+    book.save(tmp_path / "case.xlsx")
+    model = load(tmp_path / "case.xlsx")
+    session = Session(model)
+    assert [each["shows"] for each in session.greeting()[1]["scenarios"]] == [True, False]
+    session.receive(PageMessage("show", {"name": "wide"}))
+    assert session.adjustments.typed_part() == Adjustments(
+        decisions={"limit": {"value": 60.0}}, solves={"stops": {"to": 30.0}}
+    )
+
+
+def test_draws_are_kept_for_one_state_of_decisions(decided, monkeypatch):
+    """So that memory is bounded whichever decision is moved."""
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", 1_000)
+    session = Session(decided[1])
+    for value in (60.0, 40.0, None):
+        session.receive(change("limit", "value", value, of="decision"))
+        until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0)
+        mine = session._models
+        typed = [] if mine._typed is None else [mine._typed[1]]
+        kept = [bool(runner._runners) for models in (mine, *typed) for runner in models._runners.values()]
+        assert sum(kept) == 1
+
+
 def test_trials_and_seed_give_what_a_workbook_with_these_settings_gives(readings, tmp_path, monkeypatch):
     monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", moving := 2_000)
     path, model = readings
@@ -767,7 +882,7 @@ def test_numbers_that_are_no_error_of_a_reading_are_said_and_can_be_mended(readi
 
 def test_files_of_scenarios_before_forecasts_had_handles_are_read():
     old = {"assumptions": {"v": {"mean": 31.0}}, "filters": {"f": {"at_most": 2.0}}}
-    assert Adjustments.of_json(old).as_json() == {**old, "forecasts": {}, "correlations": {}}
+    assert Adjustments.of_json(old).as_json() == {**{part: {} for part in PARTS.values()}, **old}
     with pytest.raises(ValueError, match="none"):
         Adjustments.of_json({"assumptions": {"v": {"mean": "none"}}, "filters": {}})
 
@@ -975,8 +1090,6 @@ def test_undoing_takes_nothing_away_that_another_window_kept(case):
 
 
 def test_another_reading_and_another_threshold_in_a_saved_workbook_are_said(readings, tmp_path):
-    from xlmc.outputs.live.what_changed import what_changed
-
     path, model = readings
     saved = edited(path, tmp_path / "saved.xlsx", {("witness", "Reading"): 61.0, ("speed", "Threshold"): 36.0})
     assert what_changed(model, load(saved)) == [

@@ -266,6 +266,7 @@ class Solve:
         low: the lower end of what it may be.
         high: the upper end.
         root: which of several values is taken; None to take none, and make such a trial an error.
+        typed: `to`, `low` and `high`, where they are numbers -> the cell that holds it.
     """
 
     name: str
@@ -276,6 +277,7 @@ class Solve:
     high: Parameter
     row: Cell
     root: Which | None = None
+    typed: Mapping[str, Cell] = field(default_factory=dict)
 
     def words(self, code: ErrorCode) -> str:
         """Say why a trial has no value: its cell is then this error."""
@@ -298,6 +300,7 @@ class Decision:
         listed: whether they were listed one by one, so that neighbours need not be alike.
         contents: of values that are texts, TRUE or FALSE what is typed into the cell, each at its value, from 0; else
             empty.
+        base: the value that the cell holds; None for none, or no number.
     """
 
     name: str
@@ -308,6 +311,7 @@ class Decision:
     between: tuple[float, float] | None = None
     listed: bool = False
     contents: tuple[str | bool, ...] = ()
+    base: float | None = None
 
     def content(self, value: float) -> float | str | bool:
         """Return what is typed into the cell for a value."""

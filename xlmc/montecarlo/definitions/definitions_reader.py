@@ -139,6 +139,7 @@ def read_definitions(
     _remark_on_calls(calls, settings, findings)
     decisions = read_decisions(workbook, tables["xlmc_decisions"], computed, findings)
     decisions = *decisions, *_not_in(decisions, dialogs.decisions)
+    decisions = tuple(replace(each, base=each.value_of(workbook.content(each.cell).value)) for each in decisions)
     refuse_taken(solves, {each.cell: each.row for each in assumptions}, findings)
     drawn = {each.cell for each in assumptions if not each.frozen}
     what_if = tables_of_run(workbook, drawn, calls.shown.keys() | calls.unavailable.keys(), calls.rewritten)

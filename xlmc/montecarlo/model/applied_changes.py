@@ -62,7 +62,7 @@ from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.sampling.draws import Draw
 from xlmc.montecarlo.statistics.number_text import number_text
 
-__all__ = ["applied", "changed_cells", "edits"]
+__all__ = ["applied", "changed_cells", "edits", "reads_again"]
 
 
 _OF_ALL: Final = ("xlmc_settings", "xlmc_scenarios", "xlmc_case")
@@ -92,6 +92,20 @@ def applied(model: CompiledModel, changes: Iterable[Change]) -> CompiledModel:
     if _filters_of(found) != _filters_of(before) and (faults := filter_faults(found)):
         raise faults[0]
     return found
+
+
+def reads_again(model: CompiledModel, changes: Iterable[Change]) -> bool:
+    """Return whether these changes make `applied` read the workbook's definitions again.
+
+    What earlier changes of the model have no cell for, such as a switch, would be lost then.
+
+    Raises:
+        DefinitionError, FormulaError: as for `applied`.
+    """
+    changes = tuple(changes)
+    if _typed(changes) or _tabulated(changes) != 1 or _switched(changes):
+        return True
+    return model.reads_elsewhere(changed_cells(model, _changed(model, changes))[0])
 
 
 def edits(model: CompiledModel, changes: Iterable[Change]) -> tuple[dict[Cell, CellValue], dict[str, list[str]]]:

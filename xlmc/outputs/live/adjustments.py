@@ -1,10 +1,11 @@
-"""What was changed in the window, beside the workbook: numbers of assumptions, filters and forecasts, and switches.
+"""What was changed in the window, beside the workbook: numbers of its rows, and switches.
 
 Keys of an assumption are those of its parameters and cutoffs, `base` for the value that it is held at, `frozen`, those
 of a band of its distribution that it is confined to, and `kind`, the name of its distribution, whose numbers it then
 has; keys of a filter are those of its limits, of a row of evidence its `reading` and those of its error, and of both
-`used`; keys of a forecast are its `threshold` and `central`, its central range in percent. A limit, cutoff or threshold
-that is `NONE` is taken away.
+`used`; keys of a forecast are its `threshold` and `central`, its central range in percent. A decision has its `value`,
+the number in its cell; a cell that is solved for has what is typed of `to`, `low` and `high`. A limit, cutoff or
+threshold that is `NONE` is taken away.
 """
 
 from __future__ import annotations
@@ -21,10 +22,12 @@ from xlmc.montecarlo.definitions.definitions import (
     CUTOFFS,
     Assumption,
     Correlation,
+    Decision,
     Definitions,
     Filter,
     Forecast,
     Parameter,
+    Solve,
 )
 from xlmc.montecarlo.definitions.evidence import SIZES, USE_IS_OFF, Evidence
 from xlmc.montecarlo.definitions.scenarios import (
@@ -54,6 +57,7 @@ __all__ = [
     "NONE",
     "PARTS",
     "REMOVABLE",
+    "SOLVED",
     "STATED",
     "SWITCHES",
     "Adjustments",
@@ -87,6 +91,9 @@ MEASURED: Final = {"reading": "reading", **{key: heading.lower() for key, headin
 STATED: Final = {"threshold": "threshold", "central": "central range"}
 """Key of how a forecast is stated -> how it is read."""
 
+SOLVED: Final = {"to": "To", "low": "Low", "high": "High"}
+"""Key of a number of a cell that is solved for -> its heading."""
+
 NONE: Final = "none"
 """The value of what is taken away."""
 
@@ -100,6 +107,8 @@ PARTS: Final = {
     "filter": "filters",
     "forecast": "forecasts",
     "correlation": "correlations",
+    "decision": "decisions",
+    "solve": "solves",
 }
 """Kind of row -> the field of `Adjustments` that holds its changes."""
 
@@ -118,9 +127,11 @@ class Adjustments:
     filters: Changed = field(default_factory=dict)
     forecasts: Changed = field(default_factory=dict)
     correlations: Changed = field(default_factory=dict)
+    decisions: Changed = field(default_factory=dict)
+    solves: Changed = field(default_factory=dict)
 
     def __bool__(self) -> bool:
-        return bool(self.assumptions or self.filters or self.forecasts or self.correlations)
+        return any(self._part(of) for of in PARTS)
 
     def having(self, of: str, name: str, key: str, value: Amount | None) -> Adjustments:
         """Return the adjustments with one value set; None sets it back to the workbook's."""
@@ -170,8 +181,16 @@ class Adjustments:
                 found = found.having("assumption", assumption.name, "base", given["base"])
         return found
 
+    def typed_part(self) -> Adjustments:
+        """Return the part that is typed into cells before anything else is changed."""
+        return Adjustments(decisions=self.decisions, solves=self.solves)
+
+    def untyped_part(self) -> Adjustments:
+        """Return all but that part."""
+        return replace(self, decisions={}, solves={})
+
     def numbers(self, definitions: Definitions) -> Adjustments:
-        """Return the other part: numbers of what is drawn, of filters that are used, and of forecasts."""
+        """Return the rest: numbers of what is drawn, of filters that are used, of forecasts and of correlations."""
         found = Adjustments(forecasts=self.forecasts, correlations=self.correlations)
         for name, given in self.filters.items():
             if given.get("used", definitions.is_used(name)):
@@ -196,7 +215,7 @@ class Adjustments:
         """
         made = cls()
         for of, part in PARTS.items():
-            rows = found.get(part, {}) if of in ("forecast", "correlation") else found[part]  # new in 0.12.0
+            rows = found[part] if of in ("assumption", "filter") else found.get(part, {})  # new in 0.12.0
             for name, each in rows.items():
                 for key, value in each.items():
                     made = made.having(of, str(name), str(key), _amount(str(key), value))
@@ -266,6 +285,12 @@ def own_values(
     if of == "correlation":
         pair = pairs_of(definitions).get(name)
         return {} if pair is None else {"correlation": pair.value}
+    if of == "decision":
+        decision = next((each for each in definitions.decisions if each.name == name), None)
+        return {} if decision is None else {"value": decision.base}
+    if of == "solve":
+        solve = next((each for each in definitions.solves if each.name == name), None)
+        return {} if solve is None else {key: getattr(solve, key) for key in solve.typed}
     if of == "forecast":
         forecast = next((each for each in definitions.forecasts if each.name == name), None)
         return {} if forecast is None else {"threshold": forecast.threshold, "central": _percent(forecast)}
@@ -321,7 +346,20 @@ def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Chang
         if name in pairs and "correlation" in given:
             found.append(Correlated(pairs[name].first, pairs[name].second, float(given["correlation"])))
     found += [Stated(name, _numbers(given)) for name, given in adjustments.forecasts.items()]
+    found += _typed(definitions, adjustments)
     return found
+
+
+def _typed(definitions: Definitions, adjustments: Adjustments) -> Iterator[Typed]:
+    """Return what is typed into the cells of decisions, and into the rows of cells that are solved for."""
+    for decision in definitions.decisions:
+        for value in adjustments.decisions.get(decision.name, {}).values():
+            yield Typed(decision.cell, float(value), named=decision.name)
+    for solve in definitions.solves:
+        for key, value in adjustments.solves.get(solve.name, {}).items():
+            if key in solve.typed:
+                of = ("xlmc_solve", solve.name, SOLVED[key])
+                yield Typed(solve.typed[key], float(value), named=f"{solve.name} {SOLVED[key]}", of=of)
 
 
 def _numbers(given: Mapping[str, Amount]) -> dict[str, float | None]:
@@ -360,6 +398,13 @@ def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments 
     kinds: dict[str, str] = {}
     typed = [_of_handle(definitions, each) for each in scenario.changes if isinstance(each, Typed)]
     for change in (*typed, *(each for each in scenario.changes if not isinstance(each, Typed))):
+        if isinstance(change, Typed):
+            handle = _handle_of(definitions, change.cell)
+            number = _number_typed(change)
+            if handle is None or number is None:
+                return None
+            found = found.having(*handle, number)
+            continue
         values = _values(change, assumptions)
         if values is None:
             return None
@@ -385,7 +430,7 @@ def _of_handle(definitions: Definitions, typed: Typed) -> Change:
     key, value, where = keys.get(plain(heading), ""), typed.value, typed.where
     if key == "frozen" and isinstance(value, bool):
         return Frozen(name, None, where) if value else Drawn(name, where)
-    number = float(value) if isinstance(value, int | float) and not isinstance(value, bool | ErrorCode) else None
+    number = _number_typed(typed)
     if key in ("", "frozen") or (number is None and (value is not None or key not in REMOVABLE)):
         return typed
     if kind == "xlmc_evidence" and number is not None:
@@ -395,6 +440,24 @@ def _of_handle(definitions: Definitions, typed: Typed) -> Change:
     if kind == "xlmc_forecasts":
         return Stated(name, {key: number}, where)
     return Numbers(name, {key: number}, where)
+
+
+def _handle_of(definitions: Definitions, cell: Cell) -> tuple[str, str, str] | None:
+    """Return the kind, the name and the key of what is typed into a cell: of a decision, or of a row that solves."""
+    for decision in definitions.decisions:
+        if decision.cell == cell:
+            return "decision", decision.name, "value"
+    for solve in definitions.solves:
+        for key, where in solve.typed.items():
+            if where == cell:
+                return "solve", solve.name, key
+    return None
+
+
+def _number_typed(typed: Typed) -> float | None:
+    """Return the number that is typed; None for anything else."""
+    value = typed.value
+    return float(value) if isinstance(value, int | float) and not isinstance(value, bool | ErrorCode) else None
 
 
 def _rows_of_table(definitions: Definitions, kind: str) -> Iterable[Assumption | Filter | Evidence | Forecast]:
@@ -477,6 +540,8 @@ def adjusted_definitions(definitions: Definitions, adjustments: Adjustments) -> 
         unused=tuple(_filter(each, adjustments.filters) for each in definitions.unused),
         evidence=tuple(_evidence(each, adjustments.filters) for each in definitions.evidence),
         forecasts=tuple(_forecast(each, adjustments.forecasts) for each in definitions.forecasts),
+        decisions=tuple(_decision(each, adjustments.decisions) for each in definitions.decisions),
+        solves=tuple(_solve(each, adjustments.solves) for each in definitions.solves),
     )
 
 
@@ -514,6 +579,16 @@ def _forecast(forecast: Forecast, changed: Changed) -> Forecast:
     return replace(forecast, threshold=given.get("threshold", forecast.threshold), central=share)
 
 
+def _decision(decision: Decision, changed: Changed) -> Decision:
+    given = changed.get(decision.name, {})
+    return replace(decision, base=float(given["value"])) if given else decision
+
+
+def _solve(solve: Solve, changed: Changed) -> Solve:
+    given = {key: float(value) for key, value in changed.get(solve.name, {}).items()}
+    return replace(solve, **given) if given else solve  # type: ignore[arg-type]  # the keys are of its numbers
+
+
 def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
     """Say what differs, a phrase each: `friction: High 0.75 → 0.85`; also of what the workbook no longer has."""
     found = []
@@ -538,6 +613,8 @@ def changed_text(
         return "used" if after else "not used"
     if of == "correlation":
         heading = "correlation"
+    elif of in ("decision", "solve"):
+        heading = {"value": "value", **SOLVED}[key]
     elif of != "assumption":
         heading = {**LIMITS, **MEASURED, **STATED}[key]
     elif key in BAND:

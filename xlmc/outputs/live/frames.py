@@ -26,7 +26,7 @@ from xlmc.montecarlo.statistics import (
     rank_correlation,
 )
 from xlmc.montecarlo.statistics.estimate import finite
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.histogram import Figure, bars_of, multiples
 from xlmc.outputs.live.protocol import Message
@@ -355,8 +355,10 @@ def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | 
         "x": x[:_POINTS].tolist(),
         "y": y[:_POINTS].tolist(),
         "trials": int(x.size),
+        "looked": n,
+        "accepted": simulation.accepted,
         "correlation": finite(rank_correlation(x, y).value) if x.size > 2 else None,
-        "quadrants": _quadrants(simulation, (first, second), x, y),
+        "quadrants": _quadrants(simulation, (first, second), x, y, n),
         "units": [_units(simulation, first), _units(simulation, second)],
         "forms": [form_json(_form(simulation, name)) for name in (first, second)],
         "together": _together(simulation, (first, second)),
@@ -375,9 +377,11 @@ def _limit(simulation: RunResult, name: str, values: NDArray[np.float64]) -> tup
     return median, f"{name} {text}{units and ' '}{units} (median)"
 
 
-def _quadrants(simulation: RunResult, names: tuple[str, str], x: NDArray[np.float64], y: NDArray[np.float64]) -> str:
+def _quadrants(
+    simulation: RunResult, names: tuple[str, str], x: NDArray[np.float64], y: NDArray[np.float64], looked: int
+) -> str:
     """Say in which shares of the trials both quantities, `(n,)` each, lie above a limit each, only one, or neither;
-    nothing if one of them does not vary.
+    nothing if one of them does not vary. `looked` is how many accepted trials they were looked for in.
     """
     if not x.size or not np.ptp(x) or not np.ptp(y):
         return ""
@@ -385,8 +389,9 @@ def _quadrants(simulation: RunResult, names: tuple[str, str], x: NDArray[np.floa
     right, upper = x > right_of, y > over
     counts = (right & upper, right & ~upper, upper & ~right, ~(right | upper))
     both, first, second, neither = (f"{100.0 * np.count_nonzero(each) / x.size:.1f} %" for each in counts)
+    of = "the trials" if looked >= simulation.accepted else f"the first {count_text(looked)} accepted trials"
     return (
-        f"Above {first_said} and above {second_said}: {both} of the trials; only the first {first}, "
+        f"Above {first_said} and above {second_said}: {both} of {of}; only the first {first}, "
         f"only the second {second}, neither {neither}."
     )
 

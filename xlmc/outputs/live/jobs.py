@@ -243,11 +243,18 @@ class StateRun:
         resting, view = self.stage == "rest", self.view
         frame = frame_of(found, self.behind, view.forecasts, base, moving=not resting, fits=resting and view.fits)
         messages = [_frame("rest" if resting else "moving", self.version, self.seq, frame)]
-        messages[0]["shapes"] = shapes_of(model, list(self.adjustments.assumptions))
+        messages[0]["shapes"] = shapes_of(model, self._reshaped(model))
         if resting:
             return [*messages, {"kind": "rest", "version": self.version, **rest_of(found)}]
         pairs = (tab for tab in view.tabs if tab.key == "pairs")
         return [*messages, *(_part(found, self.version, tab, lambda share: None) for tab in pairs)]
+
+    def _reshaped(self, model: CompiledModel) -> list[str]:
+        """Return the assumptions whose distribution may differ from the workbook's."""
+        changed = list(self.adjustments.assumptions)
+        if self.adjustments.typed_part():  # which formulas of parameters may read
+            changed += [each.name for each in model.assumptions if each.stated and each.name not in changed]
+        return changed
 
 
 def charts_of(simulation: RunResult, behind: RunResult | None, seq: int, sight: Sight) -> Work:

@@ -3,7 +3,8 @@
 A state at rest has the model that the edited workbook would have. It is made from one in which the same assumptions are
 held at the same values: in such a model a moved number needs no formula to be looked at again. A state that moves has
 what a `ReusingRunner` can run: an assumption that was frozen a moment ago is still drawn there, as a distribution with
-a single value.
+a single value. Decisions and cells that are solved for are typed into the workbook first; all else is then as in a
+workbook that was opened with these numbers.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from xlmc.excel.formula import Graph
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
 from xlmc.montecarlo.loop.blocks import ModelRunner
 from xlmc.montecarlo.loop.reusing_runner import ReusingRunner
-from xlmc.montecarlo.model.applied_changes import applied, changed_cells
+from xlmc.montecarlo.model.applied_changes import applied, changed_cells, reads_again
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.outputs.live.adjustments import Adjustments, changes_of
 
@@ -80,6 +81,20 @@ class KnownModels:
         self._holding: dict[_State, CompiledModel] = {(): own}
         self._runners: dict[_State, ReusingRunner] = {}
         self._last: tuple[CompiledModel, Adjustments, CompiledModel] | None = None
+        self._typed: tuple[Adjustments, KnownModels] | None = None
+
+    def _with_typed(self, typed: Adjustments) -> KnownModels:
+        """Return the models of the workbook with what is typed into its cells; those of the last one are kept.
+
+        Raises:
+            DefinitionError, FormulaError: as for `applied`.
+        """
+        if self._typed is None or self._typed[0] != typed:
+            own = applied(self.own, changes_of(self.own.definitions, typed))
+            self._typed = typed, KnownModels(own, self._trials, self._most_bytes, self._seed)
+            for runner in self._runners.values():
+                runner.forget()
+        return self._typed[1]
 
     def at_rest(self, adjustments: Adjustments) -> CompiledModel:
         """Return the model of a state.
@@ -87,14 +102,18 @@ class KnownModels:
         Raises:
             DefinitionError, FormulaError: as for `applied`.
         """
+        if typed := adjustments.typed_part():
+            return self._with_typed(typed).at_rest(adjustments.untyped_part())
         state = _state_of(self.own.definitions, adjustments)
         if not state:
             return self._moved(self.own, adjustments)
+        numbers = adjustments.numbers(self.own.definitions)
         try:
             holding = self._of_state(state, adjustments)
+            again = reads_again(holding, changes_of(holding.definitions, numbers))
         except XlmcError:  # what is drawn now may have no distribution before its numbers are changed, too
-            return applied(self.own, changes_of(self.own.definitions, adjustments))
-        return self._moved(holding, adjustments.numbers(self.own.definitions))
+            again = True
+        return self._moved(self.own, adjustments) if again else self._moved(holding, numbers)
 
     def moving(self, adjustments: Adjustments) -> Moving:
         """Return what a state is run with while it moves.
@@ -103,6 +122,9 @@ class KnownModels:
             DefinitionError, FormulaError: as for `applied`.
             SimulationError: a filter or a forecast cannot be computed.
         """
+        if typed := adjustments.typed_part():
+            return self._with_typed(typed).moving(adjustments.untyped_part())
+        self._typed = None
         state = _state_of(self.own.definitions, adjustments)
         numbers = adjustments.numbers(self.own.definitions)
         still = _frozen_values(self.own, state)

@@ -10,7 +10,8 @@ secret, and a number that is used once; anything else before it ends the connect
 | `copy` | `key` | on the start page: copy a template into the folder and open it |
 | `ticket` | | on the start page: a file is to be sent |
 | `set` | `of`, `name`, `key`, `value`, `held`, `seq` | a number, a switch or the kind of an \
-assumption, filter, forecast or correlation; `value` null: as in the book, `none`: taken away; `held`: a handle is \
+assumption, filter, forecast, correlation, decision or cell that is solved for; `value` null: as in the book, \
+`none`: taken away; `held`: a handle is \
 still held; `seq`: counts the page's changes, and comes back with the frame |
 | `numbers` | `of`, `name`, `values`, `seq` | several numbers of one row at once: key -> number |
 | `run` | `trials`, `seed` | of runs at rest, instead of what the workbook says; null: what it says |
@@ -45,9 +46,10 @@ on the state that is shown; `other`: the key of the workbook to compare it with 
 | `ticket` | `ticket` | one file may be sent with it |
 | `book` | `name`, `folder`, `forecasts`, `notices`, `settings`, `shapes` | the workbook as it is now |
 | `others` | `books` | the workbooks beside it that it can be compared with: `name` and `key` |
-| `state` | `version`, `assumptions`, `filters`, `forecasts`, `correlations`, `run`, `changes`, `scenarios`, `shown`, \
-`offered`, `behind`, `undo`, `redo` | what is set; `run`: trials and seed, those of the workbook, and whether they \
-differ; `changes` in words; `undo`, `redo`: whether there is something to |
+| `state` | `version`, `assumptions`, `filters`, `forecasts`, `correlations`, `decisions`, `solves`, `run`, `changes`, \
+`scenarios`, `shown`, `offered`, `behind`, `undo`, `redo` | what is set; \
+`run`: trials and seed, those of the workbook, and whether they differ; `changes` in words; `undo`, `redo`: whether \
+there is something to |
 | `moved` | `of`, `name`, `key`, `value` | what was set while a handle is held; `state` follows when it is let go |
 | `frame` | `stage`, `version`, `seq`, `trials`, `accepted`, `share`, `few`, `shapes`, `forecasts` | an answer; `few`: \
 from too few trials; `stage`: \

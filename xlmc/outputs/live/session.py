@@ -58,10 +58,12 @@ from xlmc.outputs.live.window_book import (
     assumption_rows,
     book_message,
     correlation_rows,
+    decision_rows,
     filter_rows,
     known_scenario,
     run_row,
     scenario_rows,
+    solve_rows,
     stated_rows,
 )
 
@@ -180,6 +182,8 @@ class Session:
             "filters": filter_rows(self.own, self.adjustments),
             "forecasts": stated_rows(self.own, self.adjustments),
             "correlations": correlation_rows(self.own, self.adjustments),
+            "decisions": decision_rows(self.own, self.adjustments),
+            "solves": solve_rows(self.own, self.adjustments),
             "run": run_row(self.own, self.asked),
             "changes": in_words(self.own.definitions, self.adjustments),
             "scenarios": list(scenario_rows(self.own.definitions, self.stored)),

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 from xlmc.analysis.results.statements.in_words import distribution_text, given_text, limits_text
 from xlmc.montecarlo.definitions.definitions import Filter
 from xlmc.montecarlo.statistics.number_text import count_text, styled_text
-from xlmc.outputs.live.adjustments import LIMITS, assumption_numbers
+from xlmc.outputs.live.adjustments import LIMITS, SOLVED, assumption_numbers
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
+    from xlmc.montecarlo.definitions.definitions import Assumption, Decision, Forecast, Solve
     from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["what_changed"]
@@ -28,6 +28,8 @@ def what_changed(before: CompiledModel, after: CompiledModel) -> list[str]:
         *_rows("filter", _filters(before), _filters(after), _filter),
         *_rows("forecast", _named(before.forecasts), _named(after.forecasts), _forecast),
         *_names("check", _named(before.checks), _named(after.checks)),
+        *_rows("decision", _named(before.definitions.decisions), _named(after.definitions.decisions), _decision),
+        *_rows("solved cell", _named(before.definitions.solves), _named(after.definitions.solves), _solve),
         *_correlations(before, after),
         *_settings(before, after),
     ]
@@ -110,6 +112,23 @@ def _forecast(before: Forecast, after: Forecast) -> Iterator[str]:
         )
 
 
+def _decision(before: Decision, after: Decision) -> Iterator[str]:
+    if before.base != after.base:
+        values = ["none" if each.base is None else given_text(each.base) for each in (before, after)]
+        yield f"value {values[0]} → {values[1]}"
+    if before.values != after.values:
+        yield f"tried: {before.values_text} → {after.values_text}"
+
+
+def _solve(before: Solve, after: Solve) -> Iterator[str]:
+    for key, heading in SOLVED.items():
+        old, new = getattr(before, key), getattr(after, key)
+        if old != new:
+            yield f"{heading} {given_text(old)} → {given_text(new)}"
+    if (before.by, before.cell, before.root) != (after.by, after.cell, after.root):
+        yield "another cell is solved for, or another value is taken"
+
+
 def _correlations(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
     old, new = (
         {(row.first, row.second): row.value for row in model.definitions.correlations} for model in (before, after)
@@ -131,12 +150,12 @@ def _settings(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
 
 
 def _cells(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
-    """Name the needed cells that hold another formula or number; those of assumptions are told above."""
-    assumptions = {each.cell for model in (before, after) for each in model.assumptions}
+    """Name the needed cells that hold another formula or number; those of assumptions and decisions are told above."""
+    told = {each.cell for model in (before, after) for each in model.assumptions}
+    told |= {each.cell for model in (before, after) for each in model.definitions.decisions}
+    told |= {cell for model in (before, after) for each in model.definitions.solves for cell in each.typed.values()}
     cells = [
-        cell
-        for cell in sorted((before.read | after.read) - assumptions)
-        if _content(before, cell) != _content(after, cell)
+        cell for cell in sorted((before.read | after.read) - told) if _content(before, cell) != _content(after, cell)
     ]
     if cells:
         named = ", ".join(map(str, cells[:_MOST_CELLS]))

@@ -18,7 +18,7 @@ from xlmc.analysis.results.statements.in_words import (
 )
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
-from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Parameter
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Decision, Definitions, Filter, Parameter
 from xlmc.montecarlo.definitions.evidence import Law, Within
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.tables.evidence_rows import check_sizes
@@ -33,6 +33,7 @@ from xlmc.outputs.live.adjustments import (
     MEASURED,
     NONE,
     REMOVABLE,
+    SOLVED,
     Adjustments,
     adjusted_definitions,
     adjustments_of,
@@ -51,12 +52,14 @@ __all__ = [
     "assumption_rows",
     "book_message",
     "correlation_rows",
+    "decision_rows",
     "filter_rows",
     "forecast_rows",
     "known_scenario",
     "run_row",
     "scenario_rows",
     "shapes_of",
+    "solve_rows",
     "stated_rows",
 ]
 
@@ -67,6 +70,12 @@ _ON_AXIS: Final = frozenset(
 
 _OWN_ROWS: Final[WeakKeyDictionary[CompiledModel, dict[str, dict[str, Any]]]] = WeakKeyDictionary()
 """The rows of assumptions that are as in the workbook: every state has many of them."""
+
+_MOST_TICKS: Final = 60
+"""Values of a decision that are marked on its axis."""
+
+_SLACK: Final = 1e-9
+"""The part of a step by which a value may miss a multiple of it."""
 
 _SHAPE_DRAWS: Final = 2_000
 _SHAPE_BARS: Final = 40
@@ -318,6 +327,61 @@ def correlation_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[
         given = adjustments.correlations.get(name, {})
         rows.append({"name": name, "value": given.get("correlation", each.number), "changed": bool(given)})
     return rows
+
+
+def decision_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, Any]]:
+    """Return every decision with the number in its cell as it is now, and the values that studies try."""
+    now = adjusted_definitions(own.definitions, adjustments)
+    rows = []
+    for each, before in zip(now.decisions, own.definitions.decisions, strict=True):
+        ends = [min(each.values), max(each.values)]
+        tried = [] if each.between is not None or len(each.values) > _MOST_TICKS else list(each.values)
+        rows.append(
+            {
+                "name": each.name,
+                "units": each.units,
+                "cell": str(each.cell),
+                "says": f"tried: {each.values_text}",
+                "numbers": [_handle("value", "Value", each.base, before.base, drags=True)],
+                "ends": ends,
+                "tried": tried,
+                "step": _step_of(each),
+                "changed": each is not before,
+            }
+        )
+    return rows
+
+
+def solve_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, Any]]:
+    """Return every cell that is solved for, and what for; the numbers that are typed in its row can be changed."""
+    now = adjusted_definitions(own.definitions, adjustments)
+    rows = []
+    for each, before in zip(now.solves, own.definitions.solves, strict=True):
+        numbers = [
+            _handle(key, heading, getattr(each, key), getattr(before, key), drags=False)
+            for key, heading in SOLVED.items()
+        ]
+        root = "" if each.root is None else f", the {each.root.value} of several values"
+        rows.append(
+            {
+                "name": each.name,
+                "cell": str(each.by),
+                "says": f"{each.by} is solved for in each trial, so that {each.cell} equals To{root}",
+                "numbers": numbers,
+                "changed": each is not before,
+            }
+        )
+    return rows
+
+
+def _step_of(decision: Decision) -> float:
+    """Return the distance of the values of a decision, if all are multiples of it; otherwise that of a range."""
+    low, high = min(decision.values), max(decision.values)
+    apart = float(f"{decision.values[1] - low:.12g}") if len(decision.values) > 1 else 0.0
+    whole = apart and not decision.listed and decision.between is None
+    if whole and all(abs(each / apart - round(each / apart)) < _SLACK for each in decision.values):
+        return apart
+    return _step(high - low, max(abs(low), abs(high)))
 
 
 def run_row(model: CompiledModel, asked: RunOptions) -> dict[str, Any]:

@@ -70,7 +70,9 @@ def _solve(row: Row, computed: Computed, claims: Claims, findings: Findings) -> 
         message = f"Low ({show(ends[0])}) is not below High ({show(ends[1])})"  # type: ignore[arg-type]
         findings.problem(message, row.cell("High"), "Give the least and the largest value that the cell may have")
         return None
-    return Solve(name, cell, to, by, low, high, row.where, root)
+    numbers = {"to": to, "low": low, "high": high}
+    typed = {key: row.cell(key.capitalize()) for key, given in numbers.items() if not isinstance(given, Cell)}
+    return Solve(name, cell, to, by, low, high, row.where, root, typed)
 
 
 def _cell(row: Row, heading: str, findings: Findings) -> Cell:

@@ -33,9 +33,12 @@ class Track {
     this.box = make("div", { class: "axis" }, this.root, this.ends);
   }
 
-  /** Bring it up to date: the numbers, the step, the distribution now and in the workbook, a value to be marked. */
-  update({ numbers, step, shape, own, mark, off }) {
-    Object.assign(this, { numbers, step, shape, own, mark, off });
+  /**
+   * Bring it up to date: the numbers, the step, the distribution now and in the workbook, a value to be marked, values
+   * with a tick each.
+   */
+  update({ numbers, step, shape, own, mark, off, ticks = [] }) {
+    Object.assign(this, { numbers, step, shape, own, mark, off, ticks });
     if (this.held === null) this.fit();
     for (const number of numbers) this.place(this.knob(number), number);
     for (const [key, knob] of this.knobs) {
@@ -52,6 +55,7 @@ class Track {
     const values = this.numbers.flatMap(({ value, own }) => [value, own]).filter((each) => each !== null);
     for (const each of [this.shape, this.own]) if (each) values.push(each.low, each.high);
     if (this.mark !== null && this.mark !== undefined) values.push(this.mark);
+    values.push(...this.ticks);
     if (!values.length) values.push(0, 1);
     const [low, high] = [Math.min(...values), Math.max(...values)];
     const span = high - low || Math.abs(low) * 0.2 || 1;
@@ -184,6 +188,8 @@ class Track {
     const parts = [makeSvg("path", { class: "ground", d: `M0 ${TALL}H${WIDE}` })];
     if (this.shape) parts.push(makeSvg("path", { class: "now", d: this.outline(this.shape) }));
     if (this.own && this.own !== this.shape) parts.push(makeSvg("path", { class: "own", d: this.outline(this.own) }));
+    const ticks = this.ticks.map((each) => `M${this.at(each)} ${TALL}V${TALL - 8}`).join("");
+    if (ticks) parts.push(makeSvg("path", { class: "ticks", d: ticks }));
     if (this.mark !== null && this.mark !== undefined) {
       parts.push(makeSvg("path", { class: "mark", d: `M${this.at(this.mark)} 0V${TALL}` }));
     }

@@ -1,5 +1,5 @@
 "use strict";
-// The left side: a card for every assumption and every filter, the list of checks, and trials and seed.
+// The left side: a card for each row of the workbook's tables, the list of checks, and trials and seed.
 
 /** Set several numbers of one assumption or filter at once; gives the number of the change, as `Wire.set`. */
 function setAll(wire, of, name, values) {
@@ -269,9 +269,81 @@ class CorrelationCard {
   }
 }
 
+/** A row whose numbers are typed into cells: a decision, or a cell that is solved for. */
+class TypedCard {
+  constructor(of, row, wire, sent) {
+    Object.assign(this, { of, row, wire, sent, boxes: new Map() });
+    this.numbers = make("div", { class: "numbers" });
+    this.about = make("p", { class: "about" });
+    this.back = make("button", { type: "button", class: "back", text: "As in the workbook", "aria-label": `${row.name} as in the workbook`,
+      on: { click: () => wire.say({ kind: "reset", of, name: row.name }) } });
+    this.head = make("h3", {}, named(row.name), make("span", { class: "units", text: row.units ? `, ${row.units}` : "" }), this.back);
+    this.root = make("article", { class: "card", "aria-label": row.name }, this.head, this.numbers, this.about);
+  }
+
+  set(key, value, held, event) {
+    const number = this.row.numbers.find((each) => each.key === key);
+    number.value = value;
+    this.boxes.get(key).update(value, this.row.step ?? number.step);
+    this.sent(this.wire.set(this.of, this.row.name, key, value, held), event);
+  }
+
+  /** Another window moved a handle, or this one did. */
+  moved(key, value) {
+    const number = this.row.numbers.find((each) => each.key === key);
+    if (!number || this.isHeld) return;
+    number.value = value;
+    this.update(this.row);
+  }
+
+  update(row) {
+    this.row = row;
+    for (const number of row.numbers) {
+      if (!this.boxes.has(number.key)) {
+        const box = new NumberBox(number.heading, row.units ?? "", (value) => this.set(number.key, value, false, null),
+          { hidden: row.name, percent: row.units === "%" });
+        this.boxes.set(number.key, box);
+        this.numbers.append(box.root);
+      }
+      this.boxes.get(number.key).update(number.value, row.step ?? number.step, { off: Boolean(number.cell), why: number.cell });
+    }
+    this.root.classList.toggle("changed", row.changed);
+    this.back.hidden = !row.changed;
+    this.about.textContent = [row.says, row.cell].join(" · ");
+  }
+}
+
+/** A decision: what stands in its cell, on an axis with the values that studies try. */
+class DecisionCard extends TypedCard {
+  constructor(row, wire, sent) {
+    super("decision", row, wire, sent);
+    this.track = new Track(row.name, row.units, (key, value, held, event) => this.set(key, value, held, event));
+    this.head.after(this.track.box);
+  }
+
+  get isHeld() {
+    return this.track.held !== null;
+  }
+
+  update(row) {
+    if (this.isHeld) return;
+    super.update(row);
+    const ticks = row.tried.length ? row.tried : row.ends;
+    const [{ value, own }] = row.numbers;
+    this.track.update({ numbers: row.numbers, step: row.step, shape: null, own: null, mark: value === own ? null : own, off: false, ticks });
+  }
+}
+
+class SolveCard extends TypedCard {
+  constructor(row, wire, sent) {
+    super("solve", row, wire, sent);
+  }
+}
+
 class LeftSide {
   constructor(wire, sent) {
-    Object.assign(this, { wire, sent, assumptions: new Map(), filters: new Map(), correlations: new Map(), own: {}, shapes: {} });
+    Object.assign(this, { wire, sent, own: {}, shapes: {} });
+    for (const of of ["assumptions", "filters", "correlations", "decisions", "solves"]) this[of] = new Map();
     this.find = document.getElementById("find");
     for (const control of this.find.querySelectorAll("input")) control.addEventListener("input", () => this.sift());
     this.makeRun();
@@ -279,7 +351,8 @@ class LeftSide {
 
   /** Whether a handle is held. */
   get isHeld() {
-    return [...this.assumptions.values(), ...this.filters.values()].some(({ track }) => track.held !== null);
+    const cards = [...this.decisions.values(), ...this.assumptions.values(), ...this.filters.values()];
+    return cards.some(({ track }) => track.held !== null);
   }
 
   /** Show the assumptions that are looked for: by a part of the name or the source, or those that were changed. */
@@ -318,9 +391,12 @@ class LeftSide {
     this.shapes = { ...shapes };
   }
 
-  state({ assumptions, filters, correlations, run }) {
-    this.rows("correlations", CorrelationCard, correlations, (card, row) => card.update(row));
-    document.getElementById("correlations-head").hidden = !correlations.length;
+  state({ assumptions, filters, correlations, decisions, solves, run }) {
+    for (const [what, Card, rows] of [["decisions", DecisionCard, decisions], ["correlations", CorrelationCard, correlations],
+      ["solves", SolveCard, solves]]) {
+      this.rows(what, Card, rows, (card, row) => card.update(row));
+      document.getElementById(`${what}-head`).hidden = !rows.length;
+    }
     this.run = run;
     this.trials.update(run.trials, 1);
     this.seed.update(run.seed, 1);

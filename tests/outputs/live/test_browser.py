@@ -12,7 +12,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import openpyxl
-from live_books import book_of_readings, simple, wide_book
+from live_books import book_of_decisions, book_of_readings, simple, wide_book
 from openpyxl.worksheet.table import Table
 from simulated import simulated
 from websockets.sync.server import serve
@@ -840,6 +840,26 @@ def test_a_correlation_is_typed(chromium, running, tmp_path):
     page.at_rest(lambda: page.click(page.button("As in the workbook", "article[aria-label='t and v']")))
     assert page.changes == []
     assert box.get_attribute("value") == "0.50"
+
+
+def test_decisions_and_solved_cells_are_moved(chromium, running, tmp_path):
+    page = Page(chromium, running(book=book_of_decisions(tmp_path / "case.xlsx")))
+    card = page.card("limit")
+    box = page.box(card, "Value")
+    assert page.run("return arguments[0].querySelector('.ticks').getAttribute('d').split('M').length - 1", card) == 5
+    page.at_rest(lambda: page.slider("Value of limit").send_keys("\ue014"))
+    assert page.changes == ["limit: value 50 → 60"]
+    assert box.get_attribute("value") == "60"
+    page.at_rest(lambda: page.type(box, "55"))
+    page.at_rest(lambda: page.click(page.button("As in the workbook", "article[aria-label='limit']")))
+    assert page.changes == []
+    solved = page.card("stops")
+    assert "M!A4 is solved for in each trial, so that M!B1 equals To" in solved.text
+    assert not page.box(solved, "High").is_enabled()
+    page.at_rest(lambda: page.type(page.box(solved, "To"), "30"))
+    assert page.changes == ["stops: To 40 → 30"]
+    page.at_rest(lambda: page.click(page.one("#undo")))
+    assert page.box(solved, "To").get_attribute("value") == "40.0"
 
 
 def test_trials_and_seed_are_typed_and_brought_back(chromium, running, tmp_path):

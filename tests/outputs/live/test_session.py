@@ -359,6 +359,18 @@ def assert_quadrants(said, x, y):
     assert said.count("(median)") == 2
 
 
+def test_pairs_of_the_first_trials_alone_say_so(readings, monkeypatch):
+    session = Session(readings[1])
+    settle(session)
+    whole = pair_of(session.rest, "speed", "distance")
+    assert whole["looked"] == whole["accepted"] == whole["trials"] == session.rest.accepted
+    assert "% of the trials; only the first" in whole["quadrants"]
+    monkeypatch.setattr("xlmc.outputs.live.frames._POINTS", 20)
+    part = pair_of(session.rest, "speed", "distance")
+    assert (part["looked"], part["accepted"], part["trials"]) == (1_000, session.rest.accepted, 1_000)
+    assert "% of the first 1,000 accepted trials; only the first" in part["quadrants"]
+
+
 def test_quadrants_are_those_of_a_threshold_where_there_is_one(readings):
     session = Session(readings[1])
     settle(session)

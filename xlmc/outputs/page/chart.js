@@ -20,6 +20,7 @@ function widthOf(element) {
  */
 function drawForecast(element, forecast, trials, bins, state, { drawn, pointed, marks, line, second }) {
   const { edges, counts } = bins;
+  /** @type {[number, number]} */
   const ends = [edges[0], edges[edges.length - 1]];
   const highest = Math.max(...counts, ...[...(line ?? []), ...(second ?? [])].map(([, y]) => y));
   const top = state.view === "frequency" ? highest * 1.08 : 100;
@@ -109,7 +110,10 @@ const INCREMENTS = [
   ...[1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 5000, 10000],
 ];
 
-/** What all charts of the page have in common. */
+/**
+ * What all charts of the page have in common.
+ * @returns {any} options of uPlot
+ */
 function chartOptions(width, ends, top, { units, form }, view) {
   const thin = { stroke: "#8994A1", width: 1 };
   const axis = { stroke: INK, font: FONT, labelFont: FONT, labelSize: 22, ticks: { ...thin, size: 5 } };

@@ -2,6 +2,7 @@
 // Every table can be copied, and every chart saved as a picture.
 
 const Copies = {
+  /** @param {ParentNode} root */
   start(root = document) {
     for (const table of root.querySelectorAll(root === document ? "main table" : "table")) {
       const copied = Copies.button("Copy table", (button) => Copies.say(button, Copies.copy(table)));
@@ -119,7 +120,7 @@ const Copies = {
     copied.setAttribute("width", width);
     copied.setAttribute("height", height);
     const rules = [...document.styleSheets].flatMap((sheet) => [...sheet.cssRules])
-      .filter((rule) => rule.selectorText && /:root|\.drawn/.test(rule.selectorText)).map((rule) => rule.cssText);
+      .filter((rule) => rule instanceof CSSStyleRule && /:root|\.drawn/.test(rule.selectorText)).map((rule) => rule.cssText);
     const style = document.createElementNS("http://www.w3.org/2000/svg", "style");
     style.textContent = rules.join("\n");
     copied.prepend(style);

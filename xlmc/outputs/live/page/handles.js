@@ -26,7 +26,16 @@ function onStep(value, step) {
  */
 class Track {
   constructor(about, units, moved) {
-    Object.assign(this, { about, units, moved, held: null, knobs: new Map() });
+    this.about = about;
+    this.units = units;
+    this.moved = moved;
+    this.held = null;
+    this.knobs = new Map();
+    this.numbers = [];
+    this.ticks = [];
+    this.step = 1;
+    this.shape = this.own = this.mark = null;
+    this.off = false;
     this.drawing = makeSvg("svg", { viewBox: `0 0 ${WIDE} ${TALL}`, preserveAspectRatio: "none", "aria-hidden": "true" });
     this.root = make("div", { class: "track" }, this.drawing);
     this.ends = make("p", { class: "ends", "aria-hidden": "true" }, make("span"), make("span"));
@@ -94,17 +103,13 @@ class Track {
   place(knob, { value }) {
     knob.hidden = value === null;
     if (value === null) return;
-    const [least, most] = this.room(knob);
+    const [least, most] = this.axis;
     knob.style.left = `${this.at(value)}%`;
     knob.setAttribute("aria-valuemin", String(Math.min(least, value)));
     knob.setAttribute("aria-valuemax", String(Math.max(most, value)));
     knob.setAttribute("aria-valuenow", String(value));
     knob.setAttribute("aria-valuetext", `${stepText(value, this.step)}${this.units ? ` ${this.units}` : ""}`);
     knob.setAttribute("aria-disabled", String(Boolean(this.off)));
-  }
-
-  room() {
-    return this.axis;
   }
 
   /** The nearest place where a handle may be: those that rise stay in their order. */
@@ -228,7 +233,12 @@ const NONE = "none"; // what is said for a limit that is taken away
  */
 class NumberBox {
   constructor(label, units, set, { hidden = "", percent = units === "%", setRange = null, goes = false } = {}) {
-    Object.assign(this, { set, setRange, percent, goes, step: 1, value: null });
+    this.set = set;
+    this.setRange = setRange;
+    this.percent = percent;
+    this.goes = goes;
+    this.step = 1;
+    this.value = null;
     this.why = make("span", { class: "why", role: "alert", id: Numbered.id("why") });
     this.input = make("input", { type: "text", inputmode: "text", autocomplete: "off", spellcheck: "false",
       "aria-describedby": this.why.id });

@@ -17,7 +17,9 @@ const PICTURES = { // heights of a kind's curve, from its lower end to its upper
 /** The kinds of distribution that an assumption can have, each with a picture; `choose(kind)`: null for its own. */
 class KindMenu {
   constructor({ name }, choose) {
-    Object.assign(this, { name, choose, kinds: "" });
+    this.name = name;
+    this.choose = choose;
+    this.kinds = "";
     this.named = make("span");
     this.gallery = make("div", { class: "gallery" });
     this.root = make("details", { class: "kinds" },
@@ -46,7 +48,11 @@ class KindMenu {
 
 class AssumptionCard {
   constructor(row, wire, sent) {
-    Object.assign(this, { row, wire, sent, boxes: new Map() });
+    this.row = row;
+    this.wire = wire;
+    this.sent = sent;
+    this.boxes = new Map();
+    this.shape = this.own = null;
     this.track = new Track(row.name, row.units, (key, value, held, event) => this.set(key, value, held, event));
     this.numbers = make("div", { class: "numbers" });
     this.kinds = new KindMenu(row, (kind) => this.sent(wire.set("assumption", row.name, "kind", kind, false), null));
@@ -151,7 +157,10 @@ class AssumptionCard {
 
 class FilterCard {
   constructor(row, wire, sent) {
-    Object.assign(this, { row, wire, sent, boxes: new Map() });
+    this.row = row;
+    this.wire = wire;
+    this.sent = sent;
+    this.boxes = new Map();
     this.track = new Track(row.name, "", (key, value, held, event) => this.set(key, value, held, event));
     this.numbers = make("div", { class: "numbers" });
     this.rejected = make("p", { class: "rejected" });
@@ -245,7 +254,8 @@ const MANY_CARDS = 8; // with more assumptions they can be looked for
 /** The rank correlation of two assumptions. */
 class CorrelationCard {
   constructor(row, wire, sent) {
-    Object.assign(this, { row, wire });
+    this.row = row;
+    this.wire = wire;
     this.box = new NumberBox("Rank correlation", "", (value) => {
       if (value < -1 || value > 1) return "Type a number from -1 to 1.";
       sent(wire.set("correlation", row.name, "correlation", value, false), null);
@@ -272,7 +282,11 @@ class CorrelationCard {
 /** A row whose numbers are typed into cells: a decision, or a cell that is solved for. */
 class TypedCard {
   constructor(of, row, wire, sent) {
-    Object.assign(this, { of, row, wire, sent, boxes: new Map() });
+    this.of = of;
+    this.row = row;
+    this.wire = wire;
+    this.sent = sent;
+    this.boxes = new Map();
     this.numbers = make("div", { class: "numbers" });
     this.about = make("p", { class: "about" });
     this.back = make("button", { type: "button", class: "back", text: "As in the workbook", "aria-label": `${row.name} as in the workbook`,
@@ -291,7 +305,7 @@ class TypedCard {
   /** Another window moved a handle, or this one did. */
   moved(key, value) {
     const number = this.row.numbers.find((each) => each.key === key);
-    if (!number || this.isHeld) return;
+    if (!number) return;
     number.value = value;
     this.update(this.row);
   }
@@ -321,12 +335,12 @@ class DecisionCard extends TypedCard {
     this.head.after(this.track.box);
   }
 
-  get isHeld() {
-    return this.track.held !== null;
+  moved(key, value) {
+    if (this.track.held === null) super.moved(key, value);
   }
 
   update(row) {
-    if (this.isHeld) return;
+    if (this.track.held !== null) return;
     super.update(row);
     const ticks = row.tried.length ? row.tried : row.ends;
     const [{ value, own }] = row.numbers;
@@ -342,8 +356,15 @@ class SolveCard extends TypedCard {
 
 class LeftSide {
   constructor(wire, sent) {
-    Object.assign(this, { wire, sent, own: {}, shapes: {} });
-    for (const of of ["assumptions", "filters", "correlations", "decisions", "solves"]) this[of] = new Map();
+    this.wire = wire;
+    this.sent = sent;
+    this.own = {};
+    this.shapes = {};
+    this.assumptions = new Map();
+    this.filters = new Map();
+    this.correlations = new Map();
+    this.decisions = new Map();
+    this.solves = new Map();
     this.find = document.getElementById("find");
     for (const control of this.find.querySelectorAll("input")) control.addEventListener("input", () => this.sift());
     this.makeRun();

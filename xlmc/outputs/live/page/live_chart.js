@@ -62,8 +62,10 @@ function sharesElement({ name, shares }) {
 
 class LivePanel extends Panel {
   static behind = "";
-  static set = () => {}; // tells the server how a forecast is stated: name, key and value
-  static back = () => {}; // that it is stated as in the workbook: name
+  /** @type {(...given: any[]) => void} tells the server how a forecast is stated: name, key and value */
+  static set = () => {};
+  /** @type {(name: string) => void} that it is stated as in the workbook */
+  static back = () => {};
 
   constructor(element, forecast, z) {
     super(element, forecast, z);

@@ -1,7 +1,13 @@
 "use strict";
 // Elements made of names and texts: a text is never read as markup.
 
-/** An element with attributes, listeners (`on`) and children; a child that is a text becomes a text. */
+/**
+ * An element with attributes, listeners (`on`) and children; a child that is a text becomes a text.
+ * @param {string} tag
+ * @param {Record<string, any>} [given]
+ * @param {...(Node | string)} children
+ * @returns {any}
+ */
 function make(tag, { on = {}, text = null, ...attributes } = {}, ...children) {
   const made = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {
@@ -19,7 +25,13 @@ function named(text) {
   return make("bdi", { text });
 }
 
-/** The same for the parts of a drawing. */
+/**
+ * The same for the parts of a drawing.
+ * @param {string} tag
+ * @param {Record<string, any>} [attributes]
+ * @param {...Node} children
+ * @returns {any}
+ */
 function makeSvg(tag, attributes = {}, ...children) {
   const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));

@@ -8,7 +8,12 @@ const MANY = 6; // answers and sentences; more of them would leave no room for t
 
 class RightSide {
   constructor(wire) {
-    Object.assign(this, { wire, tab: "charts", panels: new Map(), seen: new Set(), open: null, forecasts: [] });
+    this.wire = wire;
+    this.tab = "charts";
+    this.panels = new Map();
+    this.seen = new Set();
+    this.open = null;
+    this.forecasts = [];
     this.places = {};
     const bar = document.getElementById("tabs");
     const all = document.getElementById("panels");
@@ -43,8 +48,9 @@ class RightSide {
     this.hand = new HandView(this.places.studies, wire);
     this.watch = new IntersectionObserver((entries) => {
       for (const { target, isIntersecting } of entries) {
-        if (isIntersecting) this.seen.add(target.dataset.name);
-        else this.seen.delete(target.dataset.name);
+        const { name } = /** @type {HTMLElement} */ (target).dataset;
+        if (isIntersecting) this.seen.add(name);
+        else this.seen.delete(name);
       }
       this.look();
     });

@@ -6,7 +6,7 @@ const ENDED = "xlmc has ended; type xlmc open to go on.";
 const Start = {
   start() {
     this.wire = new Wire("/start", (message) => this[message.kind](message), () => {}, (why) => this.trouble({ text: why ?? ENDED }));
-    document.getElementById("file").addEventListener("change", ({ target }) => this.take(target.files[0]));
+    document.getElementById("file").addEventListener("change", ({ target }) => this.take(/** @type {HTMLInputElement} */ (target).files[0]));
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => {
       event.preventDefault();

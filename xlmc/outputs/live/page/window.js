@@ -15,7 +15,7 @@ const Live = {
     this.right = new RightSide(this.wire);
     const say = (id, message) => document.getElementById(id).addEventListener("click", () => this.wire.say(message));
     document.getElementById("skip").addEventListener("click", () => document.getElementById(`tab-${this.right.tab}`).focus());
-    const top = document.querySelector(".top");
+    const top = /** @type {HTMLElement} */ (document.querySelector(".top"));
     new ResizeObserver(() => document.documentElement.style.setProperty("--top", `${top.offsetHeight}px`)).observe(top);
     say("undo", { kind: "undo" });
     say("redo", { kind: "redo" });
@@ -44,7 +44,9 @@ const Live = {
   /** The program has ended: nothing is taken any more, and what was answered stays. */
   over(why) {
     document.body.classList.add("away", "over");
-    document.querySelectorAll("#left, #offer, header .actions, #panel-scenarios, #panel-studies").forEach((each) => { each.inert = true; });
+    for (const each of document.querySelectorAll("#left, #offer, header .actions, #panel-scenarios, #panel-studies")) {
+      /** @type {HTMLElement} */ (each).inert = true;
+    }
     this.stand(why ?? "xlmc has ended: changes are not taken any more. Scenarios are kept; type xlmc open to go on.");
   },
 
@@ -70,8 +72,8 @@ const Live = {
     this.left.state(message);
     this.right.state(message);
     const changed = message.changes.length;
-    document.getElementById("reset").disabled = !changed && !message.run.changed;
-    for (const each of ["undo", "redo"]) document.getElementById(each).disabled = !message[each];
+    const off = { reset: !changed && !message.run.changed, undo: !message.undo, redo: !message.redo };
+    for (const [id, disabled] of Object.entries(off)) document.getElementById(id).toggleAttribute("disabled", disabled);
     this.offer(message.offered);
   },
 

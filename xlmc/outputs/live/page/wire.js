@@ -12,7 +12,15 @@ class Wire {
    * that there will be none any more: a text if there never was one.
    */
   constructor(path, heard, stands, ended) {
-    Object.assign(this, { path, heard, stands, ended, seq: 0, delay: 250, tries: 0, over: false, waiting: [] });
+    this.path = path;
+    this.heard = heard;
+    this.stands = stands;
+    this.ended = ended;
+    this.seq = 0;
+    this.delay = 250;
+    this.tries = 0;
+    this.over = false;
+    this.waiting = [];
     if (Entry.known()) this.connect();
     else this.end(Entry.refusal(false));
     addEventListener("online", () => this.again());

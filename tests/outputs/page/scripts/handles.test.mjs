@@ -1,0 +1,59 @@
+// Numbers of handles: steps, ranges that are typed into one box, and what may stand where on an axis.
+
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { test } from "node:test";
+import { runInThisContext } from "node:vm";
+
+for (const path of ["page/numbers.js", "live/page/handles.js"]) {
+  runInThisContext(readFileSync(new URL(`../../../../xlmc/outputs/${path}`, import.meta.url), "utf8"));
+}
+const { onStep, stepText, typedRange, Track } = runInThisContext("({ onStep, stepText, typedRange, Track })");
+
+test("a value lies on the grid of its step, without the dust of binary fractions", () => {
+  for (const [value, step, found] of [[0.31, 0.1, 0.3], [0.7000000000000001, 0.01, 0.7], [54, 10, 50], [-2.6, 0.5, -2.5],
+    [1e-7, 1e-8, 1e-7], [123456.4, 1, 123456]]) assert.equal(onStep(value, step), found, `${value} by ${step}`);
+  for (let i = -1000; i <= 1000; i++) assert.equal(onStep(i / 100, 0.01), i / 100);
+});
+
+test("a number has the decimals of its step, or more where it needs them", () => {
+  for (const [value, step, text] of [[0.7, 0.01, "0.70"], [50, 10, "50"], [0.123456, 0.01, "0.123456"], [null, 1, ""],
+    [undefined, 1, ""], [2, 0.5, "2.0"]]) assert.equal(stepText(value, step), text, `${value} by ${step}`);
+});
+
+test("two ends are read from one box", () => {
+  const ends = (text) => { const found = typedRange(text); return found && [found.low, found.high]; };
+  for (const text of ["0.6 to 0.8", "0.8 to 0.6", "0.6 … 0.8", "0.6..0.8", "0.6–0.8", "0.7 ± 0.1", "0.7 +/- 0.1", "0.7 +- 0.1",
+    "0,6 bis 0,8"]) assert.deepEqual(ends(text), [0.6, 0.8], text);
+  assert.deepEqual(ends("200 ± 10 %"), [180, 220]);
+  assert.deepEqual(ends("-5 to -2"), [-5, -2]);
+  assert.equal(typedRange("0.7 ± 0.1").middle, 0.7);
+  assert.equal(typedRange("0.6 to 0.8").middle, null);
+  assert.equal(typedRange("200 ± 10 %").share, true);
+  for (const text of ["0.7", "to 0.8", "0.6 to", "a to b", "", "=0.7+-0.1"]) assert.equal(typedRange(text), null, text);
+});
+
+test("handles that rise stay in their order, others go where they like", () => {
+  const track = (numbers) => Object.assign(Object.create(Track.prototype), { numbers });
+  const triangle = track([["low", 1], ["likeliest", 2], ["high", 3]].map(([key, value]) => ({ key, value })));
+  for (const [key, wanted, found] of [["low", 2.5, 2], ["low", 0, 0], ["likeliest", 5, 3], ["likeliest", 0, 1], ["high", 1.5, 2]]) {
+    assert.equal(triangle.allowed(key, wanted), found, `${key} ${wanted}`);
+  }
+  assert.equal(track([{ key: "at_least", value: 1 }, { key: "at_most", value: null }]).allowed("at_least", 9), 9);
+  assert.equal(track([{ key: "value", value: 50 }]).allowed("value", 1e6), 1e6);
+});
+
+test("an axis has room on both sides, and stays while it is good", () => {
+  const track = Object.assign(Object.create(Track.prototype), {
+    numbers: [{ value: 50, own: 50 }], ticks: [30, 70], shape: null, own: null, mark: null, ends: { children: [{}, {}] } });
+  track.fit();
+  assert.deepEqual(track.axis, [18, 82]);
+  assert.equal(track.at(50), 50);
+  assert.equal(track.at(1e9), 100);
+  track.numbers[0].value = 60;
+  track.fit();
+  assert.deepEqual(track.axis, [18, 82]);
+  track.numbers[0].value = 200;
+  track.fit();
+  assert.ok(track.axis[1] > 200);
+});

@@ -172,7 +172,7 @@ def book_of_decisions(path, trials=2_000):
     model, sheet = book.active, book.create_sheet("T")
     model.title = "M"
     cells = {"A1": 1.5, "A2": 0.7, "A3": 50.0, "A4": 10.0, "A5": 40.0, "C1": 2.0}
-    cells |= {"B1": "=A4*A1+A4*A4/(2*9.81*A2)", "B2": "=A3-B1", "B3": "=A3/3.6*A1"}
+    cells |= {"B1": "=A4*A1+A4*A4/(2*9.81*A2)", "B2": '=A3-B1-A1*(D1="wet")', "B3": "=A3/3.6*A1", "D1": "dry"}
     for cell, value in cells.items():
         model[cell] = value
     tables = {
@@ -192,6 +192,7 @@ def book_of_decisions(path, trials=2_000):
             ["Name", "Cell", "Low", "High", "Step", "Values", "Units"],
             ["limit", "=M!A3", 30.0, 70.0, 10.0, None, "km/h"],
             ["grip", "=M!C1", None, None, None, "1.9; 2; 2.5", None],
+            ["road", "=M!D1", None, None, None, "dry; wet; ice", None],
         ],
         "xlmc_solve": [
             ["Name", "Cell", "To", "By", "Low", "High", "Root"],

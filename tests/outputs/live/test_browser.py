@@ -853,6 +853,11 @@ def test_decisions_and_solved_cells_are_moved(chromium, running, tmp_path):
     page.at_rest(lambda: page.type(box, "55"))
     page.at_rest(lambda: page.click(page.button("As in the workbook", "article[aria-label='limit']")))
     assert page.changes == []
+    road = page.one("select[aria-label='Value of road']")
+    page.at_rest(lambda: road.send_keys("wet"))
+    assert page.changes == ["road: value dry → wet"]
+    page.at_rest(lambda: page.click(page.button("As in the workbook", "article[aria-label='road']")))
+    assert road.get_attribute("value") == "0"
     solved = page.card("stops")
     assert "M!A4 is solved for in each trial, so that M!B1 equals To" in solved.text
     assert not page.box(solved, "High").is_enabled()

@@ -692,8 +692,9 @@ def typed_into(path, target, cells):
     [
         pytest.param("decision", "limit", "value", 60.0, ("M", "A3"), "limit: value 50 → 60", id="decision"),
         pytest.param("decision", "grip", "value", 2.5, ("M", "C1"), "grip: value 2 → 2.5", id="one-a-parameter-reads"),
-        pytest.param("solve", "stops", "to", 30.0, ("T", "C18"), "stops: To 40 → 30", id="target"),
-        pytest.param("solve", "stops", "low", 18.0, ("T", "E18"), "stops: Low 0 → 18", id="end-of-the-range"),
+        pytest.param("decision", "road", "value", 1.0, ("M", "D1"), "road: value dry → wet", id="text"),
+        pytest.param("solve", "stops", "to", 30.0, ("T", "C19"), "stops: To 40 → 30", id="target"),
+        pytest.param("solve", "stops", "low", 18.0, ("T", "E19"), "stops: Low 0 → 18", id="end-of-the-range"),
     ],
 )
 def test_a_decision_and_a_solved_cell_give_what_the_edited_workbook_gives(
@@ -706,7 +707,8 @@ def test_a_decision_and_a_solved_cell_give_what_the_edited_workbook_gives(
     session.receive(change(name, key, value, of=of, held=True))
     session.receive(change("reaction", "high", 2.2))
     assert openpyxl.load_workbook(path)[cell[0]][cell[1]].value is not None
-    copy = typed_into(path, tmp_path / "edited.xlsx", {cell: value, ("T", "E2"): 2.2})
+    content = "wet" if name == "road" else value
+    copy = typed_into(path, tmp_path / "edited.xlsx", {cell: content, ("T", "E2"): 2.2})
     found = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
     expected = simulate(copy, trials=moving, sampling="mc")
     assert found.trial_index.tobytes() == expected.trial_index.tobytes()
@@ -736,7 +738,8 @@ def test_a_decision_and_a_solved_cell_give_what_the_edited_workbook_gives(
 def test_rows_of_decisions_and_solved_cells(decided):
     model = decided[1]
     changed = Adjustments().having("decision", "limit", "value", 60.0).having("solve", "stops", "to", 30.0)
-    limit, grip = decision_rows(model, changed)
+    limit, grip, road = decision_rows(model, changed)
+    assert (road["choices"], road["numbers"][0]["value"]) == (["dry", "wet", "ice"], 0.0)
     assert limit["numbers"][0] | {"value": 60.0, "own": 50.0, "cell": "", "drags": True} == limit["numbers"][0]
     assert (limit["says"], limit["tried"], limit["step"], limit["changed"]) == (
         "tried: 30 to 70 in steps of 10",
@@ -746,7 +749,7 @@ def test_rows_of_decisions_and_solved_cells(decided):
     )
     assert (grip["tried"], grip["step"], grip["changed"]) == ([1.9, 2.0, 2.5], 0.01, False)
     (stops,) = solve_rows(model, changed)
-    assert [(each["value"], each["cell"]) for each in stops["numbers"]] == [(30.0, ""), (0.0, ""), (None, "T!F18")]
+    assert [(each["value"], each["cell"]) for each in stops["numbers"]] == [(30.0, ""), (0.0, ""), (None, "T!F19")]
     assert stops["says"] == "M!A4 is solved for in each trial, so that M!B1 equals To, the last of several values"
 
 
@@ -754,6 +757,14 @@ def test_a_number_that_a_formula_gives_a_solved_cell_cannot_be_typed(decided):
     session = Session(decided[1])
     with pytest.raises(XlmcError, match="no solve 'stops' with 'high'"):
         session.receive(change("stops", "high", 30.0, of="solve"))
+
+
+@pytest.mark.parametrize("value", [3.0, 0.5, -1.0, 1e300])
+def test_a_decision_among_texts_has_no_other_value(decided, value):
+    session = Session(decided[1])
+    with pytest.raises(XlmcError, match="no decision 'road' with 'value'"):
+        session.receive(change("road", "value", value, of="decision"))
+    assert not Adjustments(decisions={"road": {"value": value}}).only(decided[1].definitions)
 
 
 def test_a_scenario_of_the_workbook_that_decides_is_shown(decided, tmp_path):

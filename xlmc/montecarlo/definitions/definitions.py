@@ -329,7 +329,8 @@ class Decision:
         if self.contents:
             alike = [at for at, each in enumerate(self.contents) if each == content and type(each) is type(content)]
             return float(alike[0]) if alike else None
-        return float(content) if isinstance(content, int | float) else None
+        is_number = isinstance(content, int | float) and not isinstance(content, ErrorCode)
+        return float(content) if is_number else None  # type: ignore[arg-type]  # a number, as just seen
 
     @property
     def values_text(self) -> str:

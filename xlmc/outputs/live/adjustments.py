@@ -67,6 +67,7 @@ __all__ = [
     "assumption_numbers",
     "changes_of",
     "in_words",
+    "is_choice",
     "is_own",
     "measured_numbers",
     "movable_limits",
@@ -152,7 +153,7 @@ class Adjustments:
         found = Adjustments()
         for of, name, key, value in self._each():
             own = own_values(definitions, of, name, self.kind(of, name))
-            if key in own and not is_own(value, own[key]):
+            if key in own and not is_own(value, own[key]) and is_choice(definitions, of, name, value):
                 found = found.having(of, name, key, value)
         return found
 
@@ -258,6 +259,13 @@ def _amount(key: str, value: object) -> Amount:
     return number
 
 
+def is_choice(definitions: Definitions, of: str, name: str, value: Amount | None) -> bool:
+    """Return whether a row may have a value: of a decision among texts, only these."""
+    if of != "decision" or value is None:
+        return True
+    return all(not each.contents or value in each.values for each in definitions.decisions if each.name == name)
+
+
 def is_own(value: Amount, own: Parameter | bool | str | None) -> bool:
     """Return whether a value is what the workbook says."""
     return value == own or (value == NONE and own is None)
@@ -354,7 +362,7 @@ def _typed(definitions: Definitions, adjustments: Adjustments) -> Iterator[Typed
     """Return what is typed into the cells of decisions, and into the rows of cells that are solved for."""
     for decision in definitions.decisions:
         for value in adjustments.decisions.get(decision.name, {}).values():
-            yield Typed(decision.cell, float(value), named=decision.name)
+            yield Typed(decision.cell, decision.content(float(value)), named=decision.name)
     for solve in definitions.solves:
         for key, value in adjustments.solves.get(solve.name, {}).items():
             if key in solve.typed:
@@ -399,11 +407,10 @@ def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments 
     typed = [_of_handle(definitions, each) for each in scenario.changes if isinstance(each, Typed)]
     for change in (*typed, *(each for each in scenario.changes if not isinstance(each, Typed))):
         if isinstance(change, Typed):
-            handle = _handle_of(definitions, change.cell)
-            number = _number_typed(change)
-            if handle is None or number is None:
+            handle = _handle_of(definitions, change)
+            if handle is None:
                 return None
-            found = found.having(*handle, number)
+            found = found.having(*handle)
             continue
         values = _values(change, assumptions)
         if values is None:
@@ -442,15 +449,17 @@ def _of_handle(definitions: Definitions, typed: Typed) -> Change:
     return Numbers(name, {key: number}, where)
 
 
-def _handle_of(definitions: Definitions, cell: Cell) -> tuple[str, str, str] | None:
-    """Return the kind, the name and the key of what is typed into a cell: of a decision, or of a row that solves."""
+def _handle_of(definitions: Definitions, typed: Typed) -> tuple[str, str, str, float] | None:
+    """Return the kind, the name, the key and the value of what is typed: of a decision, or of a row that solves."""
+    number = _number_typed(typed)
     for decision in definitions.decisions:
-        if decision.cell == cell:
-            return "decision", decision.name, "value"
+        if decision.cell == typed.cell:
+            value = decision.value_of(typed.value) if decision.contents else number
+            return None if value is None else ("decision", decision.name, "value", value)
     for solve in definitions.solves:
         for key, where in solve.typed.items():
-            if where == cell:
-                return "solve", solve.name, key
+            if where == typed.cell:
+                return None if number is None else ("solve", solve.name, key, number)
     return None
 
 
@@ -625,6 +634,10 @@ def changed_text(
     else:
         assumption = next(each for each in definitions.assumptions if each.name == name)
         heading = {**_HEADINGS_OF_KINDS, **assumption.headings}[key]
+    choices = next((each for each in definitions.decisions if of == "decision" and each.name == name), None)
+    if choices is not None and choices.contents:
+        old = "another" if before is None else choices.shown(float(before))  # type: ignore[arg-type]  # its value
+        return f"{heading} {old} → {choices.shown(float(after))}"
     shown = "none" if before is None else _amount_text(key, before)
     return f"{heading} {shown} → {_amount_text(key, after)}"
 

@@ -25,6 +25,7 @@ from xlmc.outputs.live.adjustments import (
     Adjustments,
     Amount,
     in_words,
+    is_choice,
     is_own,
     own_values,
     usual_variants,
@@ -340,7 +341,7 @@ class Session:
         own = own_values(self.own.definitions, of, name, self.adjustments.kind(of, name))
         for key, value in values.items():
             fits = (key in SWITCHES) == isinstance(value, bool) and (value != NONE or key in REMOVABLE)
-            fits = fits and (key == "kind") == (value in KINDS)
+            fits = fits and (key == "kind") == (value in KINDS) and is_choice(self.own.definitions, of, name, value)
             if key not in own or not (fits or value is None):
                 raise XlmcError(f"the workbook has no {of} {name!r} with {key!r} to be set")
         found = self.adjustments

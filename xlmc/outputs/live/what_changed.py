@@ -114,9 +114,9 @@ def _forecast(before: Forecast, after: Forecast) -> Iterator[str]:
 
 def _decision(before: Decision, after: Decision) -> Iterator[str]:
     if before.base != after.base:
-        values = ["none" if each.base is None else given_text(each.base) for each in (before, after)]
+        values = ["none" if each.base is None else each.shown(each.base) for each in (before, after)]
         yield f"value {values[0]} → {values[1]}"
-    if before.values != after.values:
+    if (before.values, before.contents) != (after.values, after.contents):
         yield f"tried: {before.values_text} → {after.values_text}"
 
 

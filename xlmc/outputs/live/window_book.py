@@ -336,6 +336,7 @@ def decision_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str
     for each, before in zip(now.decisions, own.definitions.decisions, strict=True):
         ends = [min(each.values), max(each.values)]
         tried = [] if each.between is not None or len(each.values) > _MOST_TICKS else list(each.values)
+        choices = [each.shown(value) for value in each.values] if each.contents else []
         rows.append(
             {
                 "name": each.name,
@@ -345,6 +346,7 @@ def decision_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str
                 "numbers": [_handle("value", "Value", each.base, before.base, drags=True)],
                 "ends": ends,
                 "tried": tried,
+                "choices": choices,
                 "step": _step_of(each),
                 "changed": each is not before,
             }

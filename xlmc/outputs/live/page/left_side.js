@@ -327,12 +327,16 @@ class TypedCard {
   }
 }
 
-/** A decision: what stands in its cell, on an axis with the values that studies try. */
+/** A decision: what stands in its cell, on an axis with the values that studies try; of texts, a menu. */
 class DecisionCard extends TypedCard {
   constructor(row, wire, sent) {
     super("decision", row, wire, sent);
     this.track = new Track(row.name, row.units, (key, value, held, event) => this.set(key, value, held, event));
     this.head.after(this.track.box);
+    this.menu = make("select", { "aria-label": `Value of ${row.name}`, on: { change: (event) => {
+      this.sent(wire.set("decision", row.name, "value", Number(this.menu.value), false), event);
+    } } });
+    this.numbers.append(this.menu);
   }
 
   moved(key, value) {
@@ -342,6 +346,15 @@ class DecisionCard extends TypedCard {
   update(row) {
     if (this.track.held !== null) return;
     super.update(row);
+    const isText = row.choices.length > 0;
+    this.track.box.hidden = this.boxes.get("value").root.hidden = isText;
+    this.menu.hidden = !isText;
+    if (isText) {
+      const { value: place } = row.numbers[0];
+      this.menu.replaceChildren(...(place === null ? [new Option("another", "")] : []), ...row.choices.map((text, i) => new Option(text, String(i))));
+      this.menu.value = place === null ? "" : String(place);
+      return;
+    }
     const ticks = row.tried.length ? row.tried : row.ends;
     const [{ value, own }] = row.numbers;
     this.track.update({ numbers: row.numbers, step: row.step, shape: null, own: null, mark: value === own ? null : own, off: false, ticks });

@@ -10,13 +10,14 @@ import click
 
 from xlmc.cli.options import (
     FilePath,
-    WholeNumber,
     chance_option,
     engine_option,
     functions_option,
     jobs_option,
     quiet_option,
+    seed_option,
     tolerance_option,
+    trials_option,
 )
 from xlmc.cli.study_output import STUDY, end_early, give_out, study_options
 
@@ -41,8 +42,8 @@ UNDECIDED = 1
     help="'A=B': ask whether FIRST needs SECOND, whose forecast B would give FIRST's assumption A; may be given several"
     " times.",
 )
-@click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the books' larger number]")
-@click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the first book's]")
+@trials_option("each run", "the books' larger number")
+@seed_option("each run", "the first book's")
 @engine_option
 @jobs_option
 @click.option("--no-causes", is_flag=True, help="Do not look for what makes the difference.")

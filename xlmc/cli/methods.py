@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import FilePath, WholeNumber, functions_option, quiet_option
+from xlmc.cli.options import FilePath, WholeNumber, functions_option, quiet_option, seed_option
 from xlmc.cli.study_output import NOT_TO_BE_USED, end_early, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
@@ -43,7 +43,7 @@ __all__ = ["methods"]
 )
 @click.option("--replicates", type=WholeNumber(2), help="How many runs of each length.  [default: 24]")
 @click.option("--quick", is_flag=True, help="Few and short runs: a first look, in about half a minute.")
-@click.option("--seed", type=WholeNumber(0), help="Seed of the reference; the runs have others.  [default: the book's]")
+@seed_option("the reference; the runs have others", "the book's")
 @study_options("the figure (.png), a workbook (.xlsx), a document (.pdf, .docx), a page (.html), JSON (.json)")
 @quiet_option
 @functions_option

@@ -9,7 +9,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath, WholeNumber, engine_option, functions_option, jobs_option, quiet_option
+from xlmc.cli.options import (
+    FilePath,
+    engine_option,
+    functions_option,
+    jobs_option,
+    quiet_option,
+    seed_option,
+    trials_option,
+)
 from xlmc.cli.study_output import STUDY, conclude, give_out, study_options
 
 if TYPE_CHECKING:
@@ -52,8 +60,8 @@ _KINDS = f"{STUDY}, the accepted trials of the best decisions' run (.csv, .parqu
     help="Percent of its trials that a candidate may lose to errors in cells; one that loses more cannot be the best.",
 )
 @click.option("--runs", type=float, default=60.0, show_default=True, help="Runs whose trials the search may take.")
-@click.option("-n", "--trials", type=WholeNumber(1), help="Trials of a run.  [default: the book's, else 200000]")
-@click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
+@trials_option("a run")
+@seed_option("the run")
 @engine_option
 @jobs_option
 @study_options(_KINDS)

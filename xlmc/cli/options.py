@@ -24,7 +24,9 @@ __all__ = [
     "jobs_option",
     "quiet_option",
     "run_options",
+    "seed_option",
     "tolerance_option",
+    "trials_option",
 ]
 
 F = TypeVar("F", bound=Callable[..., Any])
@@ -156,6 +158,16 @@ def _setting_option(setting: Setting) -> Callable[[F], F]:
             return click.option(*names, multiple=True, metavar="FORECAST", help=setting.help)
         case Seconds():
             return click.option(*names, metavar="TIME", help=setting.help)
+
+
+def trials_option(of: str, default: str = "the book's, else 200000") -> Callable[[F], F]:
+    """Make the option for the trials of `a run`, `each run`."""
+    return click.option("-n", "--trials", type=WholeNumber(1), help=f"Trials of {of}.  [default: {default}]")
+
+
+def seed_option(of: str, default: str = "the book's, else 999") -> Callable[[F], F]:
+    """Make the option for the seed of `the run`, `each run`."""
+    return click.option("--seed", type=WholeNumber(0), help=f"Seed of {of}.  [default: {default}]")
 
 
 quiet_option = click.option("--quiet", is_flag=True, help="Print no notes of what is running.")

@@ -9,13 +9,14 @@ import click
 
 from xlmc.cli.options import (
     FilePath,
-    WholeNumber,
     chance_option,
     engine_option,
     functions_option,
     jobs_option,
     quiet_option,
+    seed_option,
     tolerance_option,
+    trials_option,
 )
 from xlmc.cli.study_output import STUDY_OF_A_RUN, conclude, give_out, study_options
 
@@ -52,8 +53,8 @@ __all__ = ["screen"]
     is_flag=True,
     help="Also hold each assumption that may be held at the ends of its range: does it have to be known better?",
 )
-@click.option("-n", "--trials", type=WholeNumber(1), help="Trials of each run.  [default: the book's, else 200000]")
-@click.option("--seed", type=WholeNumber(0), help="Seed of each run.  [default: the book's, else 999]")
+@trials_option("each run")
+@seed_option("each run")
 @engine_option
 @jobs_option
 @study_options(STUDY_OF_A_RUN)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import FilePath, WholeNumber, functions_option, jobs_option, quiet_option
+from xlmc.cli.options import FilePath, functions_option, jobs_option, quiet_option, seed_option, trials_option
 from xlmc.cli.study_output import NOT_TO_BE_USED, STUDY_OF_A_RUN, end_early, study_options
 from xlmc.cli.terminal import paragraph, say, say_json
 from xlmc.cli.writing import write_files
@@ -23,8 +23,8 @@ __all__ = ["stability"]
 @click.command()
 @click.argument("book", type=FilePath())
 @click.option("--cells", "all_cells", is_flag=True, help="List every needed cell, not only forecasts and filters.")
-@click.option("-n", "--trials", type=WholeNumber(1), help="Trials of the run.  [default: the book's, else 200000]")
-@click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
+@trials_option("the run")
+@seed_option("the run")
 @jobs_option
 @study_options(STUDY_OF_A_RUN)
 @quiet_option

@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath, WholeNumber, engine_option, functions_option, jobs_option, quiet_option
+from xlmc.cli.options import (
+    FilePath,
+    engine_option,
+    functions_option,
+    jobs_option,
+    quiet_option,
+    seed_option,
+    trials_option,
+)
 from xlmc.cli.study_output import STUDY_OF_A_RUN, conclude, give_out, study_options
 
 if TYPE_CHECKING:
@@ -43,8 +51,8 @@ __all__ = ["stress"]
     multiple=True,
     help="Tell of these forecasts only: names joined by commas, * for any letters; may be given several times.",
 )
-@click.option("-n", "--trials", type=WholeNumber(1), help="Trials of the run.  [default: the book's, else 200000]")
-@click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
+@trials_option("the run")
+@seed_option("the run")
 @engine_option
 @jobs_option
 @study_options(STUDY_OF_A_RUN)

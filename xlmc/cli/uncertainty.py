@@ -7,7 +7,15 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath, WholeNumber, engine_option, functions_option, jobs_option, quiet_option
+from xlmc.cli.options import (
+    FilePath,
+    WholeNumber,
+    engine_option,
+    functions_option,
+    jobs_option,
+    quiet_option,
+    seed_option,
+)
 from xlmc.cli.study_output import STUDY, conclude, give_out, study_options
 
 if TYPE_CHECKING:
@@ -41,7 +49,7 @@ __all__ = ["uncertainty"]
     multiple=True,
     help="Tell of these forecasts only: names joined by commas, * for any letters; may be given several times.",
 )
-@click.option("--seed", type=WholeNumber(0), help="Seed of the run.  [default: the book's, else 999]")
+@seed_option("the run")
 @engine_option
 @jobs_option
 @study_options(f"{STUDY}, the accepted trials, each with its outer draw (.csv, .parquet)")

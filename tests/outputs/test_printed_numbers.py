@@ -259,7 +259,7 @@ def test_a_number_on_a_sheet_is_a_number_of_the_json(printed, command):
                 continue
             for cell in row:
                 if isinstance(cell.value, int | float) and not isinstance(cell.value, bool):
-                    half = 1e-11 * abs(cell.value) if is_run else read(repr(abs(cell.value)), None)[1]
+                    half = max(1e-11 * abs(cell.value), 0.0 if is_run else read(repr(abs(cell.value)), None)[1])
                     if not is_close(cell.value, known, half + 1e-300):
                         lost.append((sheet.title, cell.coordinate, cell.value))
     assert not lost

@@ -37,7 +37,7 @@ def show(blocks: Iterable[Block]) -> None:
             case _:
                 if not spaced:
                     say()
-                title = each.title or each.caption
+                title = each.title or each.caption.removesuffix(".")
                 rows = [[cell_text(cell) for cell in row] for row in each.rows]
                 table(title, each.heads, rows, right=sorted(each.at_right))
         spaced = not isinstance(each, Paragraph | Bullets | Code | Figure)

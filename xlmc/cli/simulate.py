@@ -206,37 +206,24 @@ def _show_sentences(run: RunResult) -> None:
 
 def _show_evidence(run: RunResult) -> None:
     """Print whether the evidence agrees, and what each item moves; nothing where none is used."""
-    from xlmc.cli.printing import table
     from xlmc.errors import capitalised
-    from xlmc.outputs.evidence_tables import ITEM_HEADS, item_rows, move_rows, trials_sentence
+    from xlmc.outputs.document.parts import Paragraph
+    from xlmc.outputs.sections.evidence import item_table, means_tables, trials_sentence
 
     found = run.agreement
     if found is None:
         return
-    table("Evidence", ITEM_HEADS, item_rows(found), right=range(2, 7))
     sentences = [] if found.sentence in found.remarks else [f"{capitalised(found.sentence)}."]
-    say(paragraph(" ".join([*sentences, trials_sentence(found)])) + "\n")  # remarks come with the other notices
-    names = list(found.found.forecasts)[:_MOST_MOVED]
-    heads = ("Means with", "Effective trials", *names)
-    forms = {name: run.results[name].form for name in names}
-    table("What each item of evidence moves", heads, move_rows(found, forms), right=range(1, len(heads)))
+    said = Paragraph(" ".join([*sentences, trials_sentence(found)]))  # remarks come with the other notices
+    show([item_table(found), said, *means_tables(run, found, [*found.found.forecasts][:_MOST_MOVED])])
 
 
 def _show_scenarios(run: RunResult) -> None:
     """Print what each scenario changes and accepts, then a table for each forecast; nothing where they were not run."""
     from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
-    from xlmc.cli.printing import table
-    from xlmc.outputs.scenario_tables import SCENARIO_HEADS, answer_heads, answer_rows, scenario_rows
-    from xlmc.outputs.sheets.scenarios_sheet import scenario_sentences
+    from xlmc.outputs.sections.scenarios import scenario_blocks
 
-    found = scenario_answers(run)
-    if not found:
-        return
-    table("Scenarios", SCENARIO_HEADS, scenario_rows(found, impossible_scenarios(run)), right=(1, 2, 3))
-    for index, each in enumerate(found[0].forecasts):
-        heads = answer_heads(found, index)
-        table(each.title, heads, answer_rows(found, index), right=range(1, len(heads)))
-    say(paragraph(" ".join(scenario_sentences(found))) + "\n")
+    show(scenario_blocks(scenario_answers(run), impossible_scenarios(run)))
 
 
 def _acceptance_sentence(run: RunResult) -> str:

@@ -44,7 +44,7 @@ def _sheet(heading: str, blocks: list[Block]) -> ResultSheet:
 
 
 def _write(heading: str, blocks: list[Block], page: Page, run: Writing) -> None:
-    from xlmc.outputs.document.xlsx_writer import write_blocks
+    from xlmc.outputs.document.xlsx_writer import Charting, write_blocks
     from xlmc.outputs.sheets.page import Page
     from xlmc.outputs.sheets.styles import Styles
 
@@ -54,5 +54,5 @@ def _write(heading: str, blocks: list[Block], page: Page, run: Writing) -> None:
     def numbers() -> Page:
         return Page(run.book.add_worksheet(f"{heading[: _TAB - 5]} data"), Styles(run.book), ())
 
-    write_blocks(page, blocks, run.book, numbers)
+    write_blocks(page, blocks, Charting(run.book, numbers))
     page.set_up_printing(run.name)

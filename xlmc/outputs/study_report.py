@@ -193,7 +193,7 @@ def _page(report: StudyReport) -> str:
 
 def book_parts(report: StudyReport) -> dict[str, bytes]:
     """Return the report as the parts of a workbook."""
-    from xlmc.outputs.document.xlsx_writer import sheet_widths, write_blocks
+    from xlmc.outputs.document.xlsx_writer import Charting, sheet_widths, write_blocks
     from xlmc.outputs.sheets.exact_book import ExactBook
 
     with ExactBook() as made:
@@ -210,7 +210,7 @@ def book_parts(report: StudyReport) -> dict[str, bytes]:
 
         written.title(report.title, report.below)
         written.row += 1
-        write_blocks(written, blocks, made, numbers)
+        write_blocks(written, blocks, Charting(made, numbers))
         written.set_up_printing(report.title)
         if report.add_sheets is not None:
             report.add_sheets(made, styles)

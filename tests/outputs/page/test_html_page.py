@@ -10,9 +10,11 @@ from fewer_sheets import leave_out_fits
 from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
+from xlmc.analysis.results.record.errors_met import errors_met
 from xlmc.api import Simulation
 from xlmc.errors import WorkbookError
 from xlmc.montecarlo.columns import column_store, on_disk
+from xlmc.montecarlo.statistics import proportion
 from xlmc.outputs.page import html_page, page_text, payload, save_page
 from xlmc.outputs.summary import error_sentence
 
@@ -108,7 +110,12 @@ def test_answers_trials_and_filters_are_the_numbers_of_the_sheet(run, book, page
     found = [e for r in stats for e in (r.mean, r.standard_deviation, *r.central())]
     errors = [float(e.error) for e in found] + [float(r.statistics.trials) for r in stats]
     above = run["area"].probability_above(16.0)
-    assert sorted(left) == sorted([*errors, above.error, *above.interval])
+    rejected = [int(each) for counts in (run.tally.rejected, run.tally.only) for each in counts]
+    shares = [run.acceptance, *(proportion(each, run.trials) for each in (run.error_trials, *rejected))]
+    errors += [
+        each.error for each in (above, *shares, *(proportion(met.trials, run.trials) for met in errors_met(run)))
+    ]
+    assert sorted(left) == sorted([*errors, *above.interval])
 
 
 def test_answers_are_those_of_the_python_object(run, page_of):

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import count
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record import make_record
@@ -15,7 +16,7 @@ from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.case_fields import case_of
-from xlmc.outputs.document.parts import Block, Document, Heading
+from xlmc.outputs.document.parts import Block, Document, Figure, Heading, Table
 from xlmc.outputs.document.sections import SECTIONS
 
 if TYPE_CHECKING:
@@ -109,9 +110,21 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
         head=f"Case {number}" if number else title,
         foot=f"{workbook.name}, seed {simulation.settings.seed}",
         cover=tuple(cover),
-        blocks=tuple(blocks),
+        blocks=tuple(_numbered(blocks)),
         paper=wanted.paper,
     )
+
+
+def _numbered(blocks: Iterable[Block]) -> Iterator[Block]:
+    """Yield the blocks, figures and tables with their numbers before their captions."""
+    figures, tables = count(1), count(1)
+    for block in blocks:
+        if isinstance(block, Figure) and block.caption:
+            yield replace(block, caption=f"Figure {next(figures)}. {block.caption}")
+        elif isinstance(block, Table) and block.caption:
+            yield replace(block, caption=f"Table {next(tables)}. {block.caption}")
+        else:
+            yield block
 
 
 @in_style_of("settings.number_style")

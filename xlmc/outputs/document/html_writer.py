@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 
 from xlmc.analysis.results.statements.in_words import plain_text
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.document.drawings import FONT, drawn
 from xlmc.outputs.document.element import EMPTY, Html, element, join
+from xlmc.outputs.document.measured import HEADS, Measured
 from xlmc.outputs.document.parts import (
     NUMBERS,
     Block,
@@ -65,15 +66,24 @@ def picture_html(picture: Picture, look: str = "drawn") -> Html:
 def _table(table: Table) -> Html:
     """Return a table, which scrolls where it is wider than the page."""
     at_right = table.at_right
-    heads = [_head(text, index in at_right) for index, text in enumerate(table.heads)]
-    body = [element("tr", *(_cell(cell, index, at_right) for index, cell in enumerate(row))) for row in table.rows]
+    wide = {index for row in table.rows for index, cell in enumerate(row) if _has_interval(cell)}
+    heads = [
+        _head(text, index in at_right)
+        for index, head in enumerate(table.heads)
+        for text in (head, *(HEADS[1:] if index in wide else ()))
+    ]
+    body = [
+        element("tr", *(each for index, cell in enumerate(row) for each in _cells(cell, index, at_right)))
+        for row in table.rows
+    ]
     inner = element(
         "table",
-        element("caption", table.caption) if table.caption else EMPTY,
+        element("caption", table.caption) if table.title and table.caption else EMPTY,
         element("thead", element("tr", *heads)) if heads else EMPTY,
         element("tbody", *body),
     )
-    title = element("h2", table.title) if table.title else EMPTY
+    said = table.caption.removesuffix(".")
+    title = element("h2", table.title) if table.title else element("h3", said) if said else EMPTY
     return title + element("div", inner, class_="wide-table")
 
 
@@ -83,9 +93,23 @@ def _head(text: str, right: bool) -> Html:
     return element("th", text, scope="col", class_="number" if right else None)
 
 
+def _has_interval(cell: Content) -> bool:
+    return isinstance(cell, Measured) and cell.interval
+
+
+def _cells(cell: Content, index: int, at_right: frozenset[int]) -> Iterator[Html]:
+    """Yield the cell, and beside a number the ends of its interval where they are shown."""
+    yield _cell(cell, index, at_right)
+    if isinstance(cell, Measured) and cell.interval:
+        for end in cell.shown[2:]:
+            yield _cell(end, index + 1, at_right)
+
+
 def _cell(cell: Content, index: int, at_right: frozenset[int]) -> Html:
     if isinstance(cell, Drawing | Chart):
         return element("td", picture_html(cell, "shape"))
+    if isinstance(cell, Measured):
+        return element("td", _measured_html(cell), class_="number")
     if isinstance(cell, Shown):
         if index == 0 and isinstance(cell.value, str):
             return element("th", cell.value, scope="row")
@@ -93,6 +117,13 @@ def _cell(cell: Content, index: int, at_right: frozenset[int]) -> Html:
     if index == 0 and index not in at_right:
         return element("th", cell, scope="row")
     return element("td", *_lines(cell), class_="number" if index in at_right else None)
+
+
+def _measured_html(cell: Measured) -> Html:
+    """Return a number and its error, which carries its full value."""
+    if cell.found is None or not math.isfinite(cell.found.value):
+        return element("span", cell.text)
+    return number(cell.found.value, cell.text)
 
 
 def _lines(text: str) -> Iterable[Html | str]:

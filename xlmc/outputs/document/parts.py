@@ -15,6 +15,7 @@ from typing import Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics.number_text import signs
+from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.sheets.cells import Shown, shown_text
 
 __all__ = [
@@ -187,8 +188,8 @@ class Chart:
 
 Picture = Drawing | Chart
 
-Content = str | Shown | Drawing | Chart
-"""The content of a cell of a table: a text, a number with its format, or a picture."""
+Content = str | Shown | Measured | Drawing | Chart
+"""The content of a cell of a table: a text, a number with its format, a number with its error, or a picture."""
 
 NUMBERS: Final = frozenset({"number", "answer", "error", "second number", "second error", "moved", "trial"})
 """Looks of cells that hold numbers, which stand at the right."""
@@ -212,7 +213,8 @@ class Table:
         rows: each of `(c,)` cells.
         right: the columns whose cells stand at the right; those of numbers do so anyway.
         widths: `(c,)` relative widths of the columns; by default what the cells need.
-        caption: above it, in small letters; empty for none.
+        caption: what it shows; empty for none.
+        spans: `(c,)` how many columns of a sheet the texts of each take; by default one.
     """
 
     title: str
@@ -221,6 +223,7 @@ class Table:
     right: Sequence[int] = ()
     widths: tuple[float, ...] = ()
     caption: str = ""
+    spans: tuple[int, ...] = ()
 
     @property
     def columns(self) -> int:
@@ -230,8 +233,8 @@ class Table:
     @property
     def at_right(self) -> frozenset[int]:
         """The columns whose cells stand at the right."""
-        shown = ((index, cell) for row in self.rows for index, cell in enumerate(row) if isinstance(cell, Shown))
-        return frozenset(self.right) | {index for index, cell in shown if cell.look in NUMBERS}
+        found = ((index, cell) for row in self.rows for index, cell in enumerate(row))
+        return frozenset(self.right) | {index for index, cell in found if _is_number(cell)}
 
     @property
     def relative_widths(self) -> tuple[float, ...]:
@@ -302,10 +305,16 @@ _WIDEST, _NARROW, _FEW = 40, 14, 8
 """Characters of a column that may stay in one line: of a table of few columns, and of one of more."""
 
 
+def _is_number(cell: Content) -> bool:
+    return isinstance(cell, Measured) or (isinstance(cell, Shown) and cell.look in NUMBERS)
+
+
 def cell_text(cell: Content) -> str:
     """Return the text of a cell; of a picture, what it shows."""
     if isinstance(cell, Shown):
         return shown_text(cell)
+    if isinstance(cell, Measured):
+        return cell.text
     return cell if isinstance(cell, str) else cell.said
 
 

@@ -4,44 +4,38 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record.definition_tables import correlations_met
 from xlmc.analysis.results.statements import meaning, statements
 from xlmc.analysis.results.statements.in_words import (
-    REJECTED_SENTENCE,
-    discards_of,
     distribution_text,
-    evidence_text,
-    limits_text,
     sampling_sentence,
     status,
 )
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.measures import noise
-from xlmc.errors import capitalised
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
-from xlmc.montecarlo.diagnostics.checking import checks_sentence
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
-from xlmc.montecarlo.statistics import proportion
 from xlmc.montecarlo.statistics.number_text import count_text, exact_text, fixed_text, number_text
 from xlmc.outputs.document.charts import influence_chart, shape_chart, shares_chart
 from xlmc.outputs.document.drawings import forecast_drawing
 from xlmc.outputs.document.drawn_trials import drawn_trials
 from xlmc.outputs.document.equations import equations_of
 from xlmc.outputs.document.glossary import GLOSSARY, WORDS_OF_EVIDENCE, WORDS_OF_SCENARIOS
-from xlmc.outputs.document.parts import Block, Bullets, Code, Content, Figure, Paragraph, Picture, Table
+from xlmc.outputs.document.parts import Block, Bullets, Code, Content, Figure, Paragraph, Table
 from xlmc.outputs.document.scene_drawing import scene_drawing
-from xlmc.outputs.evidence_tables import ITEM_HEADS, MOVES_MEANING, item_rows, move_rows, trials_sentence
-from xlmc.outputs.evidence_tables import MEANING as MEANING_OF_EVIDENCE
 from xlmc.outputs.filter_effect import filter_effect_of
 from xlmc.outputs.histogram import figures_of, not_drawn
-from xlmc.outputs.scenario_tables import SCENARIO_HEADS, answer_heads, answer_rows, scenario_rows
+from xlmc.outputs.sections.checks import check_blocks
+from xlmc.outputs.sections.evidence import evidence_blocks
+from xlmc.outputs.sections.filters import filter_blocks
+from xlmc.outputs.sections.notices import notice_blocks
+from xlmc.outputs.sections.scenarios import scenario_blocks
 from xlmc.outputs.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
-from xlmc.outputs.sheets.scenarios_sheet import scenario_sentences, scenario_warnings
 from xlmc.outputs.summary import (
     SummaryRow,
     answer_text,
@@ -85,32 +79,21 @@ class Material:
         simulation: the finished run.
         record: its record.
         forecasts: the names of those that the report is about, in the order of the workbook.
-        figures, tables: how many have been numbered so far.
     """
 
     simulation: RunResult
     record: Record
     forecasts: tuple[str, ...]
-    figures: int = field(default=0)
-    tables: int = field(default=0)
 
-    def figure(self, drawing: Picture, caption: str) -> Figure:
-        """Return a figure with the next number."""
-        self.figures += 1
-        return Figure(drawing, f"Figure {self.figures}. {caption}")
 
-    def table(
-        self,
-        caption: str,
-        heads: Sequence[str],
-        rows: Sequence[Sequence[Content]],
-        widths: Sequence[float],
-        right: Sequence[int] = (),
-    ) -> Table:
-        """Return a table with the next number."""
-        self.tables += 1
-        numbered = f"Table {self.tables}. {caption}"
-        return Table("", tuple(heads), tuple(map(tuple, rows)), tuple(right), tuple(widths), numbered)
+def _table(
+    caption: str,
+    heads: Sequence[str],
+    rows: Sequence[Sequence[Content]],
+    widths: Sequence[float],
+    right: Sequence[int] = (),
+) -> Table:
+    return Table("", tuple(heads), tuple(map(tuple, rows)), tuple(right), tuple(widths), caption)
 
 
 def _answer(material: Material) -> Iterator[Block]:
@@ -123,15 +106,15 @@ def _answer(material: Material) -> Iterator[Block]:
         yield Bullets(tuple(f"{each.text}." for each in told))
         yield Paragraph(meaning(simulation.model.workbook, told), "small")
     rows = [row for row in summarise(simulation) if row.name in material.forecasts]
-    yield _answers(material, rows)
-    yield from _texts(material, rows)
+    yield _answers(rows)
+    yield from _texts(rows)
     yield Paragraph(error_sentence(simulation.model.workbook), "small")
     ended = [] if simulation.stopped == ALL_TRIALS else [f"The run ended when {simulation.stopped.sentence}."]
     remarks = (sampling_sentence(simulation), *range_sentences(rows), *base_sentences(simulation), *ended)
     yield Paragraph(" ".join(remarks), "small")
 
 
-def _answers(material: Material, rows: Sequence[SummaryRow]) -> Table:
+def _answers(rows: Sequence[SummaryRow]) -> Table:
     thresholds = any(row.threshold is not None for row in rows)
     mixed = len({row.share for row in rows}) > 1
     heads = ["Forecast", "Units", "Mean", "Standard deviation", f"{range_heading(rows)} from", "to", "Base case"]
@@ -148,10 +131,10 @@ def _answers(material: Material, rows: Sequence[SummaryRow]) -> Table:
             line.append("" if row.above is None else share_text(row.above))
         lines.append(line)
     caption = "The answers, from the accepted trials; each number with its standard error."
-    return material.table(caption, heads, lines, widths, range(2, len(heads)))
+    return _table(caption, heads, lines, widths, range(2, len(heads)))
 
 
-def _texts(material: Material, rows: Sequence[SummaryRow]) -> Iterator[Table]:
+def _texts(rows: Sequence[SummaryRow]) -> Iterator[Table]:
     """How often each text is the answer, for each forecast whose answers are texts."""
     for row in rows:
         if row.categories:
@@ -163,13 +146,13 @@ def _texts(material: Material, rows: Sequence[SummaryRow]) -> Iterator[Table]:
             if others:
                 lines.append((others, count_text(round(left * row.trials)), f"{number_text(100.0 * left, 3)} %"))
             caption = f"{row.name}: how often each text is the answer."
-            yield material.table(caption, (row.name, "Trials", "Share"), lines, (3, 1, 1.5), (1, 2))
+            yield _table(caption, (row.name, "Trials", "Share"), lines, (3, 1, 1.5), (1, 2))
 
 
 def _scene(material: Material) -> Iterator[Block]:
     drawn = scene_drawing(material.simulation.model.workbook)
     if drawn is not None:
-        yield material.figure(
+        yield Figure(
             drawn,
             "The base case as the chart of the workbook draws it, with the numbers that were stored in "
             "the chart when the workbook was last saved.",
@@ -218,114 +201,20 @@ def _forecasts(material: Material) -> Iterator[Block]:
         drawing = (
             shares_chart(figure) if row.is_share else forecast_drawing(figure, simulation.results[row.name], width)
         )
-        yield material.figure(drawing, caption)
+        yield Figure(drawing, caption)
 
 
 def _filters(material: Material) -> Iterator[Block]:
-    simulation = material.simulation
-    if simulation.model.filters:
-        yield from _rejections(material)
-    if not simulation.model.forecast_filters:
-        return
-    yield Paragraph(
-        "Some filters concern some forecasts only. They reject no trial: such a forecast counts the accepted trials "
-        "that its filters keep, and all other forecasts count them all."
-    )
-    lines = [
-        (
-            each.filter.name,
-            each.forecast,
-            limits_text(each.filter),
-            each.filter.because or _NONE,
-            count_text(each.trials),
-            share_text(each.share),
-        )
-        for each in discards_of(simulation)
-    ]
-    heads = ("Filter", "Only for", "Must be", "Because", "Discarded trials", "Share")
-    yield material.table(
-        "Filters for some forecasts only, and the accepted trials that they discard.",
-        heads,
-        lines,
-        (2, 1.7, 1.5, 2.5, 1.1, 1.7),
-        (4, 5),
-    )
-
-
-def _rejections(material: Material) -> Iterator[Block]:
-    simulation = material.simulation
-    tally, filters = simulation.tally, simulation.model.filters
-    yield Paragraph(
-        f"A trial is accepted when all filters hold. Of {count_text(simulation.trials)} trials, "
-        f"{count_text(simulation.accepted)} were accepted ({share_text(simulation.acceptance)})."
-        if simulation.rare is None
-        else f"A trial is accepted when all filters hold. Rejected trials are counted among the first "
-        f"{count_text(simulation.trials)}, drawn before the search for accepted ones began."
-    )
-    lines = [
-        (
-            f"{number}. {each.name}",
-            limits_text(each),
-            each.because or _NONE,
-            count_text(int(tally.rejected[number - 1])),
-            share_text(proportion(int(tally.rejected[number - 1]), simulation.trials)),
-            count_text(int(tally.only[number - 1])),
-        )
-        for number, each in enumerate(filters, 1)
-    ]
-    heads = ("Filter", "Must be", "Because", "Rejected trials", "Share", "Only by it")
-    yield material.table(
-        "The filters and how many trials each rejected.", heads, lines, (2, 1.5, 3.2, 1.1, 1.7, 1.1), (3, 4, 5)
-    )
-    if simulation.plan.size:
-        yield Paragraph(REJECTED_SENTENCE, "small")
+    return filter_blocks(material.simulation, full=False)
 
 
 def _evidence(material: Material) -> Iterator[Block]:
-    found = material.simulation.agreement
-    if found is None:
-        return
-    look = "warning" if found.conflicts else "text"
-    yield Paragraph(f"{capitalised(found.sentence)}.", look)
-    remarks = tuple(f"{capitalised(each)}." for each in found.remarks if each != found.sentence)
-    if remarks:
-        yield Bullets(remarks)
-    widths = (1.7, 2.2, 1.3, 1.3, 1.3, 1.1, 0.7, 1.3)
-    yield material.table(
-        "The evidence, each item alone and with the others.", ITEM_HEADS, item_rows(found), widths, range(2, 7)
-    )
-    yield Paragraph(f"{trials_sentence(found)} {MEANING_OF_EVIDENCE}", "small")
-    names = [each for each in found.found.forecasts if each in material.forecasts]
-    for first in range(0, len(names), _FEW):
-        shown = names[first : first + _FEW]
-        heads = ("With", "Effective trials", *shown)
-        caption = "What each item of evidence moves: the means of the forecasts."
-        wide = (1.8, 1.0, *[1.5] * len(shown))
-        forms = {name: material.simulation.results[name].form for name in shown}
-        yield material.table(caption, heads, move_rows(found, forms), wide, range(1, len(heads)))
-    yield Paragraph(MOVES_MEANING, "small")
-    lines = [(each.name, evidence_text(each), each.source or _NONE) for each in material.simulation.model.evidence]
-    yield material.table("The readings and their sources.", ("Evidence", "Reading", "Source"), lines, (2, 3, 4))
+    return evidence_blocks(material.simulation, material.forecasts, full=False)
 
 
 def _scenarios(material: Material) -> Iterator[Block]:
     found = scenario_answers(material.simulation)
-    if not found:
-        return
-    for warning in scenario_warnings(found):
-        yield Paragraph(warning, "warning")
-    yield Paragraph("The workbook was run again with other contents in some of its cells. “As it is” is this report.")
-    rows = scenario_rows(found, impossible_scenarios(material.simulation))
-    caption = "What each scenario changes, and how many trials are accepted."
-    yield material.table(caption, SCENARIO_HEADS, rows, (1.7, 1, 1.6, 1.5, 3.6), (1, 2, 3))
-    for index, each in enumerate(found[0].forecasts):
-        if each.forecast.name not in material.forecasts:
-            continue
-        heads = answer_heads(found, index)
-        widths = (1.8, *[1.4] * (len(heads) - 1))
-        caption = f"{each.title}: the workbook as it is, and the scenarios."
-        yield material.table(caption, heads, answer_rows(found, index), widths, range(1, len(heads)))
-    yield Paragraph(" ".join(scenario_sentences(found)), "small")
+    return scenario_blocks(found, impossible_scenarios(material.simulation), material.forecasts)
 
 
 def _assumptions(material: Material) -> Iterator[Block]:
@@ -345,7 +234,7 @@ def _assumptions(material: Material) -> Iterator[Block]:
         "SD, before and accepted" if acts else "SD",
         "Picture",
     )
-    yield material.table(
+    yield _table(
         "The assumptions before and after filtering." if acts else "The assumptions.",
         heads,
         rows,
@@ -375,7 +264,7 @@ def _assumptions(material: Material) -> Iterator[Block]:
             for pair in met
         ]
         heads = ("First", "Second", "Asked for", "Drawn with", "Accepted")
-        yield material.table("Rank correlations of assumptions.", heads, lines, (3, 3, 1, 1, 1.5), (2, 3, 4))
+        yield _table("Rank correlations of assumptions.", heads, lines, (3, 3, 1, 1, 1.5), (2, 3, 4))
 
 
 def _assumption_row(simulation: RunResult, each: Assumption) -> list[Content]:
@@ -421,12 +310,12 @@ def _sensitivity(material: Material) -> Iterator[Block]:
     for each in shown:
         if each.influences and len(shown) <= _FEW:
             caption = f"What {each.forecast} depends on most."
-            yield material.figure(influence_chart(each, most), caption)
+            yield Figure(influence_chart(each, most), caption)
         lines += _influence_rows(each, most)
     if lines:
         heads = ("Forecast", "Assumption", "Variance explained", "Rank correlation")
         caption = f"The assumptions that each forecast depends on most, {most} at most."
-        yield material.table(caption, heads, lines, (2, 3, 1.5, 1.5), (2, 3))
+        yield _table(caption, heads, lines, (2, 3, 1.5, 1.5), (2, 3))
 
 
 def _influence_rows(found: ForecastSensitivity, most: int) -> Iterator[tuple[str, ...]]:
@@ -458,22 +347,7 @@ _KNOWN_WELL: Final = 5e-5
 
 
 def _checks(material: Material) -> Iterator[Block]:
-    checks = material.simulation.checks
-    if not checks:
-        return
-    yield Paragraph(f"{checks_sentence(checks)}. A check rejects no trial.")
-    lines = [
-        (
-            each.name,
-            _NONE if each.base.found is None else str(each.base.found),
-            count_text(each.failed),
-            each.because or _NONE,
-        )
-        for each in checks
-    ]
-    heads = ("Check", "Base case", "Trials failing", "What it means if it fails")
-    called = vocabulary_of(material.simulation.model.workbook).checks
-    yield material.table(f"The {called}: each cell must be TRUE.", heads, lines, (2.6, 0.9, 0.9, 4.6), (2,))
+    return check_blocks(material.simulation)
 
 
 def _equations(material: Material) -> Iterator[Block]:
@@ -485,12 +359,11 @@ def _equations(material: Material) -> Iterator[Block]:
         "names. xlmc computes the cells' formulas, not these texts."
     )
     heads = ("Quantity", "Symbol", "Units", "Equation", "Source")
-    yield material.table("The equations.", heads, [tuple(each) for each in found], (2.5, 0.9, 0.7, 4.0, 1.7))
+    yield _table("The equations.", heads, [tuple(each) for each in found], (2.5, 0.9, 0.7, 4.0, 1.7))
 
 
 def _notices(material: Material) -> Iterator[Block]:
-    if material.simulation.notices:
-        yield Bullets(tuple(f"{notice}" for notice in material.simulation.notices))
+    return notice_blocks(material.simulation)
 
 
 def _repeat(material: Material) -> Iterator[Block]:
@@ -515,7 +388,7 @@ def _repeat(material: Material) -> Iterator[Block]:
         *software,
         *(each for each in machine if len(each[1]) < 60),
     ]
-    yield material.table("What the numbers depend on.", ("What", "Value"), lines, (1.6, 5))
+    yield _table("What the numbers depend on.", ("What", "Value"), lines, (1.6, 5))
 
 
 def _glossary(material: Material) -> Iterator[Block]:

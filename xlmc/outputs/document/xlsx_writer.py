@@ -6,11 +6,13 @@ What charts are drawn from stands on a second sheet. Pictures, which a sheet of 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.outputs.document.drawings import COLOURS
+from xlmc.outputs.document.measured import HEADS, Measured
 from xlmc.outputs.document.parts import (
     Bars,
     Block,
@@ -26,7 +28,7 @@ from xlmc.outputs.document.parts import (
     Table,
     cell_text,
 )
-from xlmc.outputs.sheets.cells import Shown, spread_format
+from xlmc.outputs.sheets.cells import BLANK, Shown, shown_text, spread_format
 from xlmc.outputs.sheets.styles import DARK, INK, LIGHT, SIZE, across, bounds, no_reference, straight, upwards
 
 if TYPE_CHECKING:
@@ -35,7 +37,7 @@ if TYPE_CHECKING:
 
     from xlmc.outputs.sheets.page import Page
 
-__all__ = ["sheet_widths", "write_blocks"]
+__all__ = ["Charting", "sheet_widths", "write_blocks"]
 
 _WIDTHS: Final = (44.0, *[17.0] * 7)
 _LONG, _LONG_NUMBER = 60, 26
@@ -53,35 +55,52 @@ _PIXELS: Final = 23
 _LOOKS: Final = {"text": "paragraph", "small": "remark"}
 
 
-def write_blocks(page: Page, blocks: Iterable[Block], book: Workbook, numbers: Callable[[], Page]) -> None:
+@dataclass(frozen=True, slots=True)
+class Charting:
+    """Where charts of Excel's own are made.
+
+    Attributes:
+        book: that the sheet is in.
+        numbers: gives the sheet that takes what charts are drawn from; it is asked only where there is one.
+    """
+
+    book: Workbook
+    numbers: Callable[[], Page]
+
+
+def write_blocks(page: Page, blocks: Iterable[Block], charting: Charting | None = None, last: int = _LAST) -> None:
     """Write blocks from the page's row on down.
 
     Args:
         page: the sheet.
         blocks: to write.
-        book: that the sheet is in.
-        numbers: gives the sheet that takes what charts are drawn from; it is asked only where there is one.
+        charting: where charts are made; without it they are told in words.
+        last: the column to which paragraphs reach.
     """
+    spaced = True
     for block in blocks:
+        if not (spaced or isinstance(block, Heading) or (isinstance(block, Table) and (block.title or block.caption))):
+            page.row += 1
+        spaced = not isinstance(block, Table)
         match block:
             case Heading(text, _):
                 page.heading(text)
             case Paragraph(text, look):
-                page.wide(text, _LOOKS.get(look, look), _LAST)
+                page.wide(text, _LOOKS.get(look, look), last)
             case Bullets(texts, look):
                 for text in texts:
-                    page.wide(f"• {text}", _LOOKS.get(look, look), _LAST)
+                    page.wide(f"• {text}", _LOOKS.get(look, look), last)
             case Code(text):
-                page.wide(text, "paragraph", _LAST)
+                page.wide(text, "paragraph", last)
             case Figure(picture, caption):
-                if isinstance(picture, Chart) and isinstance(picture.data, Lines | Bars):
-                    _write_chart(page, book, picture, numbers())
+                if charting and isinstance(picture, Chart) and isinstance(picture.data, Lines | Bars):
+                    _write_chart(page, charting.book, picture, charting.numbers())
                 else:
-                    page.wide(f"{picture.said}.", "remark", _LAST)
+                    page.wide(f"{picture.said}.", "remark", last)
                 if caption:
-                    page.wide(caption, "remark", _LAST)
+                    page.wide(caption, "remark", last)
             case Table():
-                _write_table(page, block)
+                _write_table(page, block, last)
 
 
 def sheet_widths(blocks: Iterable[Block]) -> list[float]:
@@ -89,11 +108,12 @@ def sheet_widths(blocks: Iterable[Block]) -> list[float]:
     widths = list(_WIDTHS)
     for block in blocks:
         if isinstance(block, Table) and not _is_wrapped(block):
-            right = block.at_right
-            widths += [_WIDTHS[-1]] * (block.columns - len(widths))
-            for column, cells in enumerate(zip(*block.rows, strict=True)):
-                longest = max(len(cell_text(cell)) for cell in cells)
-                widths[column] = max(widths[column], min(longest, _LONG_NUMBER if column in right else _LONG))
+            lines, counts = _lines_of(block)
+            widths += [_WIDTHS[-1]] * (sum(counts) - len(widths))
+            right = [index in block.at_right for index, count in enumerate(counts) for _ in range(count)]
+            for column, shown in enumerate(zip(*lines, strict=True)):
+                longest = max(len(shown_text(cell)) for cell in shown)
+                widths[column] = max(widths[column], min(longest, _LONG_NUMBER if right[column] else _LONG))
     return widths
 
 
@@ -102,35 +122,69 @@ def _is_wrapped(table: Table) -> bool:
     return table.columns == 2 and any(len(cell_text(row[1])) > _LONG for row in table.rows)
 
 
-def _write_table(page: Page, table: Table) -> None:
-    if table.title:
-        page.heading(table.title)
-    if table.caption:
-        page.wide(table.caption, "remark", _LAST)
+def _write_table(page: Page, table: Table, last: int) -> None:
+    if table.title or table.caption:
+        page.heading(table.title or table.caption.removesuffix("."))
+    if table.title and table.caption:
+        page.wide(table.caption, "remark", last)
     right = table.at_right
-    rows = [[_cell(cell, index, index in right) for index, cell in enumerate(row)] for row in table.rows]
+    lines, counts = _lines_of(table)
     if _is_wrapped(table):
-        for row in ([Shown(head, look="header left") for head in table.heads], *rows):
+        for row in ([Shown(head, look="header left") for head in table.heads], *lines):
             page.line(row, (0, 1), _LAST)
-    elif table.heads:
-        page.table(table.heads, rows)
-    else:
-        for row in rows:
-            page.line(row)
-    page.row += 1
+        return
+    starts, end = _starts(table, counts)
+    if table.heads:
+        looks = ["header" if index in right else "header left" for index in range(table.columns)]
+        heads = [
+            Shown(text, look=look)
+            for head, look, count in zip(table.heads, looks, counts, strict=True)
+            for text in (head, *HEADS[: count - 1])
+        ]
+        page.line(heads, starts, end)
+    for line in lines:
+        page.line(line, starts, end)
 
 
-def _cell(cell: Content, index: int, is_number: bool) -> Shown:
-    """Return a cell of the sheet: a text that is a number becomes one; a number with its error stays text."""
+def _lines_of(table: Table) -> tuple[list[list[Shown]], list[int]]:
+    """Return each row as cells of the sheet, and how many of them each column of the table takes."""
+    right = table.at_right
+    lines = [[_cells(cell, index, right) for index, cell in enumerate(row)] for row in table.rows]
+    counts = [max((len(line[index]) for line in lines), default=1) for index in range(table.columns)]
+    filled = (
+        [[*cells, *[BLANK] * (count - len(cells))] for cells, count in zip(line, counts, strict=True)] for line in lines
+    )
+    return [[shown for cells in line for shown in cells] for line in filled], counts
+
+
+def _starts(table: Table, counts: Sequence[int]) -> tuple[list[int], int]:
+    """Return the column of the sheet in which each cell of a row begins, and the column to which the last one reaches.
+
+    Args:
+        table: the table.
+        counts: how many cells each of its columns takes.
+    """
+    starts: list[int] = []
+    column = 0
+    for count, span in zip(counts, table.spans or [1] * table.columns, strict=True):
+        starts += range(column, column + count)
+        column += max(count, span)
+    return starts, column - 1
+
+
+def _cells(cell: Content, index: int, right: Collection[int]) -> Sequence[Shown]:
+    """Return the cells of the sheet that a cell of a table takes: a text that is a number becomes one."""
+    if isinstance(cell, Measured):
+        return cell.shown
     if isinstance(cell, Shown):
-        return cell
+        return (cell,)
     text = cell.said if isinstance(cell, Drawing | Chart) else cell
-    if not is_number:
-        return Shown(text, look="name" if index == 0 else "text")
+    if index not in right:
+        return (Shown(text, look="name" if index == 0 else "text"),)
     try:
-        return Shown(float(text))
+        return (Shown(float(text)),)
     except ValueError:
-        return Shown(text, look="number")
+        return (Shown(text, look="number"),)
 
 
 def _write_chart(page: Page, book: Workbook, chart: Chart, numbers: Page) -> None:

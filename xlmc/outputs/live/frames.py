@@ -28,9 +28,9 @@ from xlmc.montecarlo.statistics import (
 from xlmc.montecarlo.statistics.estimate import finite
 from xlmc.montecarlo.statistics.number_text import count_text, number_text
 from xlmc.outputs.document.element import EMPTY, Html, element, join
+from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import Figure, bars_of, multiples
 from xlmc.outputs.live.protocol import Message
-from xlmc.outputs.page.flow import Flow
 from xlmc.outputs.page.payload import forecast_payload, form_json
 from xlmc.outputs.page.sensitivity_sections import dependence, limits
 from xlmc.outputs.page.sheet_sections import (
@@ -42,8 +42,8 @@ from xlmc.outputs.page.sheet_sections import (
     record,
     statistics,
 )
+from xlmc.outputs.sections.scenarios import scenario_blocks
 from xlmc.outputs.sheets.results_sheet import opening_sentences
-from xlmc.outputs.sheets.scenarios_sheet import write_scenario_tables
 from xlmc.outputs.summary import SummaryRow, base_case, error_sentence, share_text, shares_of
 
 if TYPE_CHECKING:
@@ -326,9 +326,8 @@ def scenarios_html(found: Sequence[ScenarioAnswers], impossible: Mapping[str, st
         found: the workbook itself, then scenarios.
         impossible: why there are no answers of a scenario, by its name.
     """
-    flow = Flow()
-    write_scenario_tables(flow, found, impossible)
-    return element("section", element("h2", "Scenarios"), flow.html).source
+    blocks = blocks_html(scenario_blocks(found, impossible))
+    return element("section", element("h2", "Scenarios"), blocks).source
 
 
 def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.record import Entry, Record, RecordTable, Section, Value
@@ -15,22 +15,24 @@ from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.number_text import count_text, styled_text, whole_text
 from xlmc.outputs.document.charts import shape_chart
 from xlmc.outputs.document.element import EMPTY, Html, element
-from xlmc.outputs.document.html_writer import estimate_html, number, picture_html
+from xlmc.outputs.document.html_writer import blocks_html, estimate_html, number, picture_html
 from xlmc.outputs.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of
 from xlmc.outputs.page.flow import Flow
-from xlmc.outputs.sheets.accounting import write_accounting, write_checks
+from xlmc.outputs.sections.checks import check_blocks
+from xlmc.outputs.sections.evidence import evidence_blocks
+from xlmc.outputs.sections.filters import count_blocks, filter_blocks
+from xlmc.outputs.sections.notices import notice_blocks
+from xlmc.outputs.sections.scenarios import scenario_blocks
 from xlmc.outputs.sheets.assumptions_sheet import MOVED, NARROWED, STRATIFIED, meaning_text, write_correlations
 from xlmc.outputs.sheets.cells import NONE
 from xlmc.outputs.sheets.certainty_sheet import write_ranges
-from xlmc.outputs.sheets.evidence_sheet import write_agreement
 from xlmc.outputs.sheets.pairs_sheet import pair_sentences, write_pair_table
-from xlmc.outputs.sheets.results_sheet import LAST, write_counts
-from xlmc.outputs.sheets.scenarios_sheet import write_scenario_tables
 from xlmc.outputs.sheets.statistics_sheet import write_forecast
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Assumption
     from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.outputs.document.parts import Block
 
 __all__ = [
     "assumptions",
@@ -80,11 +82,7 @@ def pairs(simulation: RunResult) -> Html:
 def scenarios(simulation: RunResult) -> Html:
     """Return the answers of the workbook's scenarios beside its own; nothing if they were not run."""
     found = scenario_answers(simulation)
-    if not found:
-        return EMPTY
-    flow = Flow()
-    write_scenario_tables(flow, found, impossible_scenarios(simulation))
-    return element("section", element("h2", "Scenarios"), flow.html, id="scenarios")
+    return _section("scenarios", "Scenarios", scenario_blocks(found, impossible_scenarios(simulation)))
 
 
 def statistics(simulation: RunResult, names: Collection[str] | None = None) -> Html:
@@ -102,28 +100,18 @@ def statistics(simulation: RunResult, names: Collection[str] | None = None) -> H
 
 def checks(simulation: RunResult) -> Html:
     """Return the checks; nothing if the workbook has none."""
-    if not simulation.checks:
-        return EMPTY
-    flow = Flow()
-    write_checks(flow, simulation, LAST)
-    return element("section", element("h2", "Checks"), flow.html, id="checks")
+    return _section("checks", "Checks", check_blocks(simulation))
 
 
 def evidence(simulation: RunResult) -> Html:
-    """Whether the evidence agrees, and what each item moves; nothing where none is used."""
-    if simulation.agreement is None:
-        return EMPTY
-    flow = Flow()
-    write_agreement(flow, simulation)
-    return element("section", element("h2", "Evidence"), flow.html, id="evidence")
+    """Return whether the evidence agrees, and what each item moves; nothing where none is used."""
+    return _section("evidence", "Evidence", evidence_blocks(simulation, simulation.results, full=True))
 
 
 def filters(simulation: RunResult) -> Html:
-    """How many trials were run and accepted, and what each filter rejected."""
-    flow = Flow()
-    write_counts(flow, simulation)
-    write_accounting(flow, simulation, LAST)
-    return element("section", element("h2", "Trials and filters"), flow.html, id="filters")
+    """Return how many trials were run and accepted, and what each filter rejected."""
+    found = (*count_blocks(simulation), *filter_blocks(simulation, full=True))
+    return _section("filters", "Trials and filters", found)
 
 
 def assumptions(simulation: RunResult) -> Html:
@@ -210,10 +198,13 @@ def _change(found: Estimate, marked: bool) -> Html:
 
 def notices(simulation: RunResult) -> Html:
     """Return the notices; nothing if there are none."""
-    if not simulation.notices:
-        return EMPTY
-    notices = (element("p", str(notice), class_="notice") for notice in simulation.notices)
-    return element("section", element("h2", "Notices"), *notices, id="notices")
+    return _section("notices", "Notices", notice_blocks(simulation))
+
+
+def _section(key: str, heading: str, found: Iterable[Block]) -> Html:
+    """Return a section of the page; nothing where it has no blocks."""
+    blocks = [*found]
+    return element("section", element("h2", heading), blocks_html(blocks), id=key) if blocks else EMPTY
 
 
 def record(found: Record) -> Html:

@@ -7,11 +7,14 @@ from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.record.errors_met import lost_sentences
 from xlmc.analysis.results.statements.in_words import sampling_sentence
-from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
-from xlmc.montecarlo.statistics import Estimate, proportion
+from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.outputs.document.parts import Heading
+from xlmc.outputs.document.xlsx_writer import write_blocks
+from xlmc.outputs.sections.checks import check_blocks
+from xlmc.outputs.sections.filters import count_blocks, filter_blocks
+from xlmc.outputs.sections.notices import notice_blocks
 from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.accounting import write_accounting, write_checks
 from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.summary import (
     SummaryRow,
@@ -28,7 +31,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.sheets.page import Page
 
-__all__ = ["LAST", "WIDTHS", "base_sentences", "opening_sentences", "range_sentences", "write_counts", "write_results"]
+__all__ = ["LAST", "WIDTHS", "base_sentences", "opening_sentences", "range_sentences", "write_results"]
 
 WIDTHS = (30, 9, *[9.5] * 10)
 LAST = 11
@@ -44,10 +47,10 @@ def write_results(page: Page, simulation: RunResult) -> None:
     for sentence in opening_sentences(simulation):
         page.wide(sentence, "warning", LAST)
     _write_answers(page, simulation)
-    write_counts(page, simulation)
-    write_checks(page, simulation, LAST)
-    write_accounting(page, simulation, LAST)
-    _write_notices(page, simulation)
+    found = (*count_blocks(simulation), *check_blocks(simulation), *filter_blocks(simulation, full=True))
+    write_blocks(page, found, last=LAST)
+    if notices := [*notice_blocks(simulation)]:
+        write_blocks(page, [Heading("Notices", 2), *notices], last=LAST)
     page.set_up_printing(book)
 
 
@@ -166,59 +169,7 @@ def base_sentences(simulation: RunResult) -> list[str]:
     return [f"{meaning}. As a trial it would be rejected by: {', '.join(found.rejected_by)}."]
 
 
-def write_counts(page: Page, simulation: RunResult) -> None:
-    """Write how many trials were run, accepted and lost."""
-    page.heading("Trials")
-    total, rare = simulation.trials, simulation.rare
-    lost = proportion(min(simulation.error_trials, total), total)
-    headers = ("", "Trials", "Share", "±", "95 % from", "to")
-    starts = (0, 2, 3, 4, 5, 6)
-    page.line([Shown(header, look="header") for header in headers], starts, 6)
-    for line in (
-        *_search_lines(simulation),
-        [
-            Shown("Run" if rare is None else "Drawn before the search", look="name"),
-            cells.count(total),
-            *[cells.BLANK] * 4,
-        ],
-        [
-            Shown("Accepted" if rare is None or not rare.at_least else "Accepted, at least", look="name"),
-            cells.count(simulation.accepted),
-            *_share(simulation.acceptance),
-        ],
-        *_weight_lines(simulation),
-        [Shown("Lost to errors in cells", look="name"), cells.count(simulation.error_trials), *_share(lost)],
-    ):
-        page.line(line, starts, 6)
-    if simulation.stopped != ALL_TRIALS:
-        page.row += 1
-        page.wide(f"The run ended when {simulation.stopped.sentence}.", "remark", LAST)
-
-
-def _weight_lines(simulation: RunResult) -> list[list[Shown]]:
-    """How many trials of equal weight carry as much, where evidence weights them."""
-    found = simulation.weighting
-    if found is None:
-        return []
-    return [[Shown("Effective", look="name"), cells.count(round(found.effective)), *[cells.BLANK] * 4]]
-
-
-def _search_lines(simulation: RunResult) -> list[list[Shown]]:
-    """Return the row with the number of evaluations, if accepted trials are rare."""
-    if simulation.rare is None:
-        return []
-    return [[Shown("Evaluated in all", look="name"), cells.count(simulation.rare.evaluations), *[cells.BLANK] * 4]]
-
-
 def _share(found: Estimate) -> list[Shown]:
     if found.error == 0.0 and found.value in (0.0, 1.0):
         return [Shown(found.value, "0%"), *[cells.BLANK] * 3]
     return [*cells.share(found), *cells.interval(found, percent=True)]
-
-
-def _write_notices(page: Page, simulation: RunResult) -> None:
-    if not simulation.notices:
-        return
-    page.heading("Notices")
-    for notice in simulation.notices:
-        page.wide(str(notice), "notice", LAST)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Final
@@ -12,6 +11,7 @@ if TYPE_CHECKING:
     from xlmc.analysis.studies.stress import Moved, Part, Scenario, Stressed, Tail
     from xlmc.montecarlo.definitions.definitions import Forecast
     from xlmc.montecarlo.statistics import Estimate
+    from xlmc.outputs.document.measured import Measured
     from xlmc.outputs.document.parts import Block, Figure, Table
     from xlmc.outputs.study_report import StudyReport
 
@@ -165,26 +165,19 @@ def _restricted(found: Stressed, tail: Tail) -> str:
     return f"{'from' if tail.is_high else 'up to'} {limit}{f' {row.units}' if row.units else ''}"
 
 
-def _numbers(found: Stressed, forecast: Forecast, part: Part) -> Iterator[str]:
+def _numbers(found: Stressed, forecast: Forecast, part: Part) -> Iterator[Measured]:
     """Yield the cells of a row: mean and shares with how far they have moved, and the ends of the range."""
-    from xlmc.outputs.scenario_tables import change_text
-    from xlmc.outputs.summary import share_text
+    from xlmc.outputs.document.measured import Measured
 
     form = found.forms[forecast.name]
     for name, number in part.numbers.items():
         change = part.changes.get(name)
         if name == "above" or "low" not in part.numbers:
-            yield from (share_text(number), change_text(change, share=True))
+            yield from (Measured(number, "share"), Measured(change, "points"))
         elif name != "mean":
-            yield form.estimate(number)
+            yield Measured(number, form=form)
         else:
-            yield from (form.estimate(number), "" if change is None else _signed(form.spread(change), change.value))
-
-
-def _signed(text: str, value: float) -> str:
-    """Put a plus before what is above 0, unless it is rounded to 0."""
-    is_zero = re.search("[1-9]", text.partition("±")[0]) is None
-    return f"+{text}" if value > 0 and not is_zero else text
+            yield from (Measured(number, form=form), Measured(change, "change", form))
 
 
 def _chart(found: Stressed, forecast: Forecast, ranked: list[tuple[Tail, Tail]]) -> Figure | None:

@@ -1,0 +1,80 @@
+"""A number with its standard error, as the content of a cell: one text, or on a sheet cells of its own for each."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Final
+
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.statistics import Estimate, format_estimate
+from xlmc.outputs.sheets import cells
+from xlmc.outputs.sheets.cells import BLANK, Shown
+from xlmc.outputs.summary import share_text
+
+__all__ = ["HEADS", "Measured"]
+
+HEADS: Final = ("±", "95 % from", "to")
+"""Headings of the columns of a sheet behind that of a number."""
+
+_SHARES: Final = frozenset({"share", "points"})
+_SPANS: Final = frozenset({"spread", "change"})
+_SIGNED: Final = frozenset({"change", "points"})
+
+
+@dataclass(frozen=True, slots=True)
+class Measured:
+    """A number with its standard error.
+
+    Attributes:
+        found: the number; None where there is none.
+        what: `number`; `share` of trials; `spread`, a standard deviation; `change`, a difference of numbers; `points`,
+            a difference of shares, in percentage points.
+        form: how a number is written.
+        look: of its cell on a sheet.
+        interval: a sheet shows the ends of its 95 % interval, too.
+        like: a number beside it, whose digits it takes if it has no error of its own.
+        nothing: what stands where there is no number.
+    """
+
+    found: Estimate | None
+    what: str = "number"
+    form: Form = PLAIN
+    look: str = "number"
+    interval: bool = False
+    like: Estimate | None = None
+    nothing: str = ""
+
+    @property
+    def text(self) -> str:
+        """Write the number and its error: `11.799 ± 0.013`, `5.44 ± 0.32 %`, `+0.59 ± 0.03`."""
+        found = self.found
+        if found is None or math.isnan(found.value):
+            return self.nothing
+        match self.what:
+            case "share":
+                text = share_text(found)
+            case "points":
+                text = format_estimate(100.0 * found.value, None if found.error is None else 100.0 * found.error)
+            case what:
+                text = self.form.spread(found) if what in _SPANS else self.form.estimate(found)
+        is_above = self.what in _SIGNED and found.value > 0.0 and re.search("[1-9]", text.partition("±")[0])
+        return f"+{text}" if is_above else text or self.nothing
+
+    @property
+    def shown(self) -> Sequence[Shown]:
+        """Return its cells on a sheet: the number and its error, and the ends of its interval where they are shown."""
+        found = self.found
+        count = 4 if self.interval else 2
+        if found is None:
+            return [Shown(self.nothing) if self.nothing else BLANK] * count
+        if self.what in _SHARES:
+            if self.interval and found.error == 0.0 and found.value in (0.0, 1.0):
+                return [Shown(found.value, "0%"), *[BLANK] * (count - 1)]
+            ends = cells.interval(found, percent=True) if self.interval else []
+            return [*cells.share(found, self.look), *ends]
+        spread = self.what in _SPANS
+        ends = cells.interval(found, form=self.form, spread=spread) if self.interval else []
+        return [*cells.estimate(found, self.look, like=self.like, form=self.form, spread=spread), *ends]

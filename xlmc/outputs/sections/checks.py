@@ -1,0 +1,46 @@
+"""The checks of a workbook: what each asks, and how many accepted trials fail it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from xlmc.montecarlo.diagnostics.checking import checks_sentence
+from xlmc.outputs.document.measured import Measured
+from xlmc.outputs.document.parts import Block, Content, Paragraph, Table
+from xlmc.outputs.sheets import cells
+from xlmc.outputs.sheets.cells import NONE, Shown
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.diagnostics.checking import CheckResult
+    from xlmc.montecarlo.simulation.simulation import RunResult
+
+__all__ = ["check_blocks"]
+
+
+def check_blocks(simulation: RunResult) -> Iterator[Block]:
+    """Yield the checks; nothing where the workbook has none."""
+    checks = simulation.checks
+    if not checks:
+        return
+    yield Table(
+        "",
+        ("Check", "Cell", "Base case", "Trials failing", "Share", "Because"),
+        tuple(map(_row, checks)),
+        widths=(2.4, 1.2, 0.9, 0.9, 1.3, 3.6),
+        caption="Checks: each cell must be TRUE.",
+        spans=(1, 2, 2, 1, 1, 4),
+    )
+    yield Paragraph(f"{checks_sentence(checks)}. A check rejects no trial.", "small")
+
+
+def _row(check: CheckResult) -> tuple[Content, ...]:
+    found = check.base.found
+    return (
+        check.name,
+        str(check.cell),
+        Shown(NONE if found is None else found, look="warning" if check.holds is False else "text"),
+        cells.count(check.failed),
+        Measured(check.share, "share"),
+        check.because or NONE,
+    )

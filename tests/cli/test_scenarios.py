@@ -66,7 +66,7 @@ def test_from_the_workbook_to_all_outputs(xlmc, book, tmp_path):
     assert outcome.code == plain.code
     assert outcome.out.startswith(plain.out[: plain.out.index("± is the standard error")])
     names = ["as it is", "narrow", "held", "looser", "higher rate"]
-    for title in ("Scenarios", "area, ft²", "inverse"):
+    for title in ("Scenarios: what is changed, and how many trials are accepted", "area, ft²", "inverse"):
         assert [line[0].strip() for line in lines_of(outcome.out, title)] == names
 
     found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))

@@ -71,12 +71,14 @@ class _Writer:
                     self._file.add_heading(printable(text), level)
                 case Paragraph(text, look):
                     self._paragraph(
-                        text, _SMALL if look == "small" else _BODY, bold=look == "warning"
+                        text, _SMALL if look in ("small", "meaning") else _BODY, bold=look == "warning"
                     ).paragraph_format.keep_with_next = isinstance(after, Table | Figure)
-                case Bullets(texts, look):
-                    for text in texts:
-                        run = self._file.add_paragraph(style="List Bullet").add_run(printable(text))
-                        run.font.size = _points(_SMALL if look == "small" else _BODY)
+                case Bullets(_, look):
+                    for sentence in block.led:
+                        paragraph = self._file.add_paragraph(style="List Bullet")
+                        for text, bold in zip(sentence, (True, None), strict=True):
+                            run = paragraph.add_run(printable(text))
+                            run.font.size, run.bold = _points(_SMALL if look == "small" else _BODY), bold
                 case Code(text):
                     run = self._file.add_paragraph().add_run(printable(text))
                     run.font.name = "Courier New"

@@ -43,10 +43,12 @@ def _html(block: Block) -> Html:
     match block:
         case Heading(text, level):
             return element(f"h{level + 1}", text)
-        case Paragraph(text, look):
-            return element("p", text, class_=_LOOKS.get(look, look), role="alert" if look == "warning" else None)
-        case Bullets(texts, look):
-            return element("ul", *(element("li", text) for text in texts), class_=_LOOKS.get(look, look))
+        case Paragraph(text, look, phrases):
+            said = [element("bdi", each.text) if each.is_name else each.text for each in phrases] or [text]
+            return element("p", *said, class_=_LOOKS.get(look, look), role="alert" if look == "warning" else None)
+        case Bullets(_, look, leads):
+            items = (element("li", *_led(lead, rest)) for lead, rest in block.led)
+            return element("ul", *items, class_="statements" if leads else _LOOKS.get(look, look))
         case Code(text):
             return element("pre", element("code", text))
         case Figure(picture, caption):
@@ -54,6 +56,13 @@ def _html(block: Block) -> Html:
             return element("figure", picture_html(picture, look), element("figcaption", caption) if caption else EMPTY)
         case Table():
             return _table(block)
+
+
+def _led(lead: str, rest: str) -> Iterator[Html | str]:
+    """Yield a sentence, with what it begins with in bold."""
+    if lead:
+        yield element("b", element("bdi", lead))
+    yield rest if lead else element("bdi", rest)
 
 
 def picture_html(picture: Picture, look: str = "drawn") -> Html:
@@ -109,11 +118,12 @@ def _cell(cell: Content, index: int, at_right: frozenset[int]) -> Html:
     if isinstance(cell, Drawing | Chart):
         return element("td", picture_html(cell, "shape"))
     if isinstance(cell, Measured):
-        return element("td", _measured_html(cell), class_="number")
+        return element("td", _measured_html(cell), class_="number range" if cell.look == "range" else "number")
     if isinstance(cell, Shown):
         if index == 0 and isinstance(cell.value, str):
             return element("th", cell.value, scope="row")
-        return element("td", shown_html(cell), class_=cell.look if cell.look in NUMBERS else None)
+        look = cell.look if cell.look in NUMBERS else "number" if index in at_right else None
+        return element("td", shown_html(cell), class_=look)
     if index == 0 and index not in at_right:
         return element("th", cell, scope="row")
     return element("td", *_lines(cell), class_="number" if index in at_right else None)
@@ -137,9 +147,10 @@ def _lines(text: str) -> Iterable[Html | str]:
 
 def shown_html(shown: Shown) -> Html:
     """Return the text that a cell shows, as HTML; a number carries its full value."""
+    text = shown.written or shown_text(shown)
     if isinstance(shown.value, str) or shown.value is None or not math.isfinite(shown.value):
-        return element("span", shown_text(shown))
-    return number(shown.value, shown_text(shown))
+        return element("span", text)
+    return number(shown.value, text)
 
 
 def number(value: float, shown: str) -> Html:

@@ -36,6 +36,7 @@ class Measured:
         look: of its cell on a sheet.
         interval: a sheet shows the ends of its 95 % interval, too.
         like: a number beside it, whose digits it takes if it has no error of its own.
+        written: its text, where that is another than usual.
         nothing: what stands where there is no number.
     """
 
@@ -45,14 +46,15 @@ class Measured:
     look: str = "number"
     interval: bool = False
     like: Estimate | None = None
+    written: str = ""
     nothing: str = ""
 
     @property
     def text(self) -> str:
         """Write the number and its error: `11.799 ± 0.013`, `5.44 ± 0.32 %`, `+0.59 ± 0.03`."""
         found = self.found
-        if found is None or math.isnan(found.value):
-            return self.nothing
+        if found is None or math.isnan(found.value) or self.written:
+            return self.written or self.nothing
         match self.what:
             case "share":
                 text = share_text(found)

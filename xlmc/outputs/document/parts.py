@@ -17,6 +17,7 @@ from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics.number_text import signs
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.sheets.cells import Shown, shown_text
+from xlmc.outputs.summary import Phrase
 
 __all__ = [
     "NUMBERS",
@@ -56,18 +57,38 @@ class Heading:
 
 @dataclass(frozen=True, slots=True)
 class Paragraph:
-    """A paragraph; `look` is `text`, `small`, `warning`, `quote` or `subtitle`."""
+    """A paragraph.
+
+    Attributes:
+        text: all that it says.
+        look: `text`, `small`, `meaning`, `warning`, `notice`, `quote` or `subtitle`.
+        phrases: the same in parts, of which some are names of the workbook; empty where none is known to be one.
+    """
 
     text: str
     look: str = "text"
+    phrases: tuple[Phrase, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class Bullets:
-    """A list of sentences; `look` is `text` or `small`."""
+    """A list of sentences.
+
+    Attributes:
+        texts: the sentences.
+        look: `text` or `small`.
+        leads: what each begins with that is to be seen first; empty for nothing.
+    """
 
     texts: tuple[str, ...]
     look: str = "text"
+    leads: tuple[str, ...] = ()
+
+    @property
+    def led(self) -> list[tuple[str, str]]:
+        """Return what each sentence begins with, and the rest of it."""
+        leads = self.leads or [""] * len(self.texts)
+        return [(lead, text.removeprefix(lead)) for lead, text in zip(leads, self.texts, strict=True)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -191,7 +212,7 @@ Picture = Drawing | Chart
 Content = str | Shown | Measured | Drawing | Chart
 """The content of a cell of a table: a text, a number with its format, a number with its error, or a picture."""
 
-NUMBERS: Final = frozenset({"number", "answer", "error", "second number", "second error", "moved", "trial"})
+NUMBERS: Final = frozenset({"number", "answer", "range", "error", "second number", "second error", "moved", "trial"})
 """Looks of cells that hold numbers, which stand at the right."""
 
 
@@ -312,7 +333,7 @@ def _is_number(cell: Content) -> bool:
 def cell_text(cell: Content) -> str:
     """Return the text of a cell; of a picture, what it shows."""
     if isinstance(cell, Shown):
-        return shown_text(cell)
+        return cell.written or shown_text(cell)
     if isinstance(cell, Measured):
         return cell.text
     return cell if isinstance(cell, str) else cell.said

@@ -8,10 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record.definition_tables import correlations_met
-from xlmc.analysis.results.statements import meaning, statements
 from xlmc.analysis.results.statements.in_words import (
     distribution_text,
-    sampling_sentence,
     status,
 )
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
@@ -19,7 +17,6 @@ from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.measures import noise
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
-from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.statistics.number_text import count_text, exact_text, fixed_text, number_text
 from xlmc.outputs.document.charts import influence_chart, shape_chart, shares_chart
 from xlmc.outputs.document.drawings import forecast_drawing
@@ -30,27 +27,19 @@ from xlmc.outputs.document.parts import Block, Bullets, Code, Content, Figure, P
 from xlmc.outputs.document.scene_drawing import scene_drawing
 from xlmc.outputs.filter_effect import filter_effect_of
 from xlmc.outputs.histogram import figures_of, not_drawn
+from xlmc.outputs.sections.answers import answer_blocks
 from xlmc.outputs.sections.checks import check_blocks
 from xlmc.outputs.sections.evidence import evidence_blocks
 from xlmc.outputs.sections.filters import filter_blocks
 from xlmc.outputs.sections.notices import notice_blocks
 from xlmc.outputs.sections.scenarios import scenario_blocks
-from xlmc.outputs.sheets.results_sheet import base_sentences, opening_sentences, range_sentences
 from xlmc.outputs.summary import (
-    SummaryRow,
     answer_text,
-    base_text,
     central_text,
-    end_texts,
-    error_sentence,
     estimate_text,
     first_forecasts,
-    frequent_texts,
     percent,
-    question,
-    range_heading,
     share_text,
-    summarise,
 )
 
 if TYPE_CHECKING:
@@ -97,56 +86,7 @@ def _table(
 
 
 def _answer(material: Material) -> Iterator[Block]:
-    simulation = material.simulation
-    for sentence in opening_sentences(simulation):
-        yield Paragraph(sentence, "warning")
-    yield Paragraph("".join(said.text for said in question(simulation)))
-    told = [each for each in statements(simulation) if each.forecast in material.forecasts]
-    if told:
-        yield Bullets(tuple(f"{each.text}." for each in told))
-        yield Paragraph(meaning(simulation.model.workbook, told), "small")
-    rows = [row for row in summarise(simulation) if row.name in material.forecasts]
-    yield _answers(rows)
-    yield from _texts(rows)
-    yield Paragraph(error_sentence(simulation.model.workbook), "small")
-    ended = [] if simulation.stopped == ALL_TRIALS else [f"The run ended when {simulation.stopped.sentence}."]
-    remarks = (sampling_sentence(simulation), *range_sentences(rows), *base_sentences(simulation), *ended)
-    yield Paragraph(" ".join(remarks), "small")
-
-
-def _answers(rows: Sequence[SummaryRow]) -> Table:
-    thresholds = any(row.threshold is not None for row in rows)
-    mixed = len({row.share for row in rows}) > 1
-    heads = ["Forecast", "Units", "Mean", "Standard deviation", f"{range_heading(rows)} from", "to", "Base case"]
-    heads += ["Range holds"] * mixed + ["Threshold", "Above threshold"] * thresholds
-    widths = [2.4, 0.9, 1.6, 1.6, 1.6, 1.6, 1.1, *[1.0] * mixed, *[1.3, 1.5] * thresholds]
-    lines = []
-    for row in rows:
-        line = [row.name, row.unit, answer_text(row), row.form.spread(row.spread[0]), *end_texts(row)]
-        line.append(base_text(row))
-        if mixed:
-            line.append(percent(row.share))
-        if thresholds:
-            line.append("" if row.threshold is None else row.form.number(row.threshold))
-            line.append("" if row.above is None else share_text(row.above))
-        lines.append(line)
-    caption = "The answers, from the accepted trials; each number with its standard error."
-    return _table(caption, heads, lines, widths, range(2, len(heads)))
-
-
-def _texts(rows: Sequence[SummaryRow]) -> Iterator[Table]:
-    """How often each text is the answer, for each forecast whose answers are texts."""
-    for row in rows:
-        if row.categories:
-            told, others, left = frequent_texts(row.categories)
-            lines = [
-                (text or "(empty)", count_text(round(share.value * share.n)), share_text(share))
-                for text, share in told.items()
-            ]
-            if others:
-                lines.append((others, count_text(round(left * row.trials)), f"{number_text(100.0 * left, 3)} %"))
-            caption = f"{row.name}: how often each text is the answer."
-            yield _table(caption, (row.name, "Trials", "Share"), lines, (3, 1, 1.5), (1, 2))
+    return answer_blocks(material.simulation, material.forecasts)
 
 
 def _scene(material: Material) -> Iterator[Block]:

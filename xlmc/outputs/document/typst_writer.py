@@ -149,8 +149,8 @@ def _block(block: Block, leads: bool) -> Iterator[str]:
             yield f'#block(inset: 6pt, stroke: (left: 3pt + rgb("#9C0006")), strong({_text(text)}))'
         case Paragraph(text, look):
             yield f"#block(sticky: {str(leads).lower()}, par(text(size: {_size(look)}, {_text(text)})))"
-        case Bullets(texts, look):
-            items = ", ".join(f"[#{_text(text)}]" for text in texts)
+        case Bullets(_, look):
+            items = ", ".join(f"[#strong({_text(lead)})#{_text(rest)}]" for lead, rest in block.led)
             yield f"#text(size: {_size(look)}, list(spacing: {'.5em' if look == 'small' else '.7em'}, {items}))"
         case Code(text):
             yield f"#raw({_text(text)}, block: true)"
@@ -163,7 +163,7 @@ def _block(block: Block, leads: bool) -> Iterator[str]:
 
 
 def _size(look: str) -> str:
-    return "9pt" if look == "small" else "10.5pt"
+    return "9pt" if look in ("small", "meaning") else "10.5pt"
 
 
 def _table(table: Table) -> str:

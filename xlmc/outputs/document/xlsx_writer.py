@@ -52,7 +52,7 @@ _CLOUD: Final = {
 _CHART_ROWS: Final = 17
 _PIXELS: Final = 23
 """Of a row."""
-_LOOKS: Final = {"text": "paragraph", "small": "remark"}
+_LOOKS: Final = {"text": "paragraph", "small": "remark", "meaning": "remark"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,9 +85,9 @@ def write_blocks(page: Page, blocks: Iterable[Block], charting: Charting | None 
         match block:
             case Heading(text, _):
                 page.heading(text)
-            case Paragraph(text, look):
+            case Paragraph(text, look, _):
                 page.wide(text, _LOOKS.get(look, look), last)
-            case Bullets(texts, look):
+            case Bullets(texts, look, _):
                 for text in texts:
                     page.wide(f"• {text}", _LOOKS.get(look, look), last)
             case Code(text):

@@ -42,8 +42,8 @@ from xlmc.outputs.page.sheet_sections import (
     record,
     statistics,
 )
+from xlmc.outputs.sections.answers import opening_sentences
 from xlmc.outputs.sections.scenarios import scenario_blocks
-from xlmc.outputs.sheets.results_sheet import opening_sentences
 from xlmc.outputs.summary import SummaryRow, base_case, error_sentence, share_text, shares_of
 
 if TYPE_CHECKING:

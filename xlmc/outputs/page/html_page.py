@@ -28,12 +28,12 @@ from xlmc.outputs.document import further_sections
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import figures_of
-from xlmc.outputs.page.answers import answers
 from xlmc.outputs.page.forecast_charts import charts, overlays
 from xlmc.outputs.page.payload import payload_text
 from xlmc.outputs.page.second_run import second_run
 from xlmc.outputs.page.sensitivity_sections import dependence, limits
 from xlmc.outputs.page.sheet_sections import (
+    answer,
     assumptions,
     certainty,
     checks,
@@ -158,7 +158,7 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
     figures, name = figures_of(simulation, simulation.detailed), simulation.model.workbook.name
     found = None if simulation.weighting is not None else sensitivities(simulation)
     parts = {
-        "answer": answers(simulation),
+        "answer": answer(simulation),
         "second": EMPTY if beside is None else second_run(simulation, beside),
         "forecasts": charts(simulation, figures),
         "overlay": overlays(figures) if len(figures) < _MANY else EMPTY,

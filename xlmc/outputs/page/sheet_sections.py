@@ -18,6 +18,7 @@ from xlmc.outputs.document.element import EMPTY, Html, element
 from xlmc.outputs.document.html_writer import blocks_html, estimate_html, number, picture_html
 from xlmc.outputs.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of
 from xlmc.outputs.page.flow import Flow
+from xlmc.outputs.sections.answers import answer_blocks
 from xlmc.outputs.sections.checks import check_blocks
 from xlmc.outputs.sections.evidence import evidence_blocks
 from xlmc.outputs.sections.filters import count_blocks, filter_blocks
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from xlmc.outputs.document.parts import Block
 
 __all__ = [
+    "answer",
     "assumptions",
     "certainty",
     "checks",
@@ -56,6 +58,11 @@ _COLUMNS = len(_HEADS) + len(_CHANGES)
 _OPEN = frozenset({"run", "file", "trials", "sampling", "software"})
 
 _CODE = frozenset({"repeat", "command", "fingerprint", "sha256", "original_sha256"})
+
+
+def answer(simulation: RunResult) -> Html:
+    """Return what was asked and answered, which can be read alone."""
+    return _section("answer", "The answer", answer_blocks(simulation, simulation.results))
 
 
 def certainty(simulation: RunResult, names: Collection[str] | None = None) -> Html:

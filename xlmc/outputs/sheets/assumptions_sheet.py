@@ -53,7 +53,7 @@ _NAMED = 3
 _SHAPE = _NAMED + 2 + _STATISTICS
 WIDTHS = (32, 9.5, 12.5, 10.5, 7, *(8, 6.1) * (_STATISTICS // 2), 13.5)
 _LINES = 3
-_ROW = 15.0
+_ROW = 14.25
 _GAP = 6.0
 _SIZE = (98, 62)
 """The size of a small chart in pixels: within the cells of three lines."""

@@ -82,12 +82,14 @@ class Shown:
     Attributes:
         look: by default `text` for a text, and `number` for anything else.
         date1904: whether a date counts days from 1904.
+        written: its text in outputs that are no sheet, where that is another than the sheet shows.
     """
 
     value: str | float | None
     format: str = "General"
     look: str = ""
     date1904: bool = False
+    written: str = ""
 
     def __post_init__(self) -> None:
         if not self.look:

@@ -39,6 +39,8 @@ WIDTHS = (44, 38, 13, 13, 12, 12, 12)
 
 LAST = len(WIDTHS) - 1
 
+_ROW = 15.75
+
 _PERCENT = "0.0%"
 
 _Z = "1.96"
@@ -47,6 +49,7 @@ _Z = "1.96"
 def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None:
     """Write the sheet; `trials` is where the trials stand that its formulas count."""
     name = simulation.model.workbook.name
+    page.height = _ROW
     page.title("Certainty", f"{name}: {count_text(simulation.accepted)} accepted trials")
     if said := statements(simulation):
         page.heading("In words")

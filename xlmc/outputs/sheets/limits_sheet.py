@@ -43,6 +43,12 @@ _PRINTED: Final = (
     "Only the changes of the means are printed. The shares of trials accepted, the slopes and the numbers of all "
     "charts are below, and are not printed unless you clear the print area."
 )
+_FIRST_ROWS: Final = 12
+"""Rows of the sheet that each of the first charts covers: a page has room for eight."""
+_MOVED: Final = (
+    "Charts: how far each forecast's mean moves from that with the limit as it is; whiskers are standard errors of the "
+    "change. Other filters and limits stay."
+)
 _LIMIT, _CHANGE, _OF_RANGE = 1, 4, 10
 """Columns of the long table."""
 
@@ -50,20 +56,20 @@ _LIMIT, _CHANGE, _OF_RANGE = 1, 4, 10
 def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) -> None:
     """Write the sheet; its first charts draw the tables that stand below them, so room is left for them."""
     page.title("Filter limits: how the answers move as each limit moves", name)
-    for sentence in (*limit_sentences(found), _PRINTED):
+    for sentence in (*limit_sentences(found), f"{_MOVED} {_PRINTED}"):
         page.wide(sentence, "remark", CHARTED)
     forecasts = {each.forecast: each for each in found.forecasts}
     page.row += 1
     top, drawn = page.row, sum(bool(limit.points) for limit in found.filter_limits)
     for _ in range(0, drawn, 2):
         page.may_begin()
-        page.row += CHART_ROWS + 1
+        page.row += _FIRST_ROWS + 1
     printed = page.row
     charts: list[Captioned] = []
     for limit in found.filter_limits:
         charts += _write_limit(page, book, limit, forecasts)
     page.row = top
-    place_rows(page, charts)
+    place_rows(page, charts, _FIRST_ROWS, [_brief(limit) for limit in found.filter_limits if limit.points])
     page.set_up_printing(name, printed=printed, columns=(0, CHARTED))
 
 
@@ -213,6 +219,11 @@ def moved_caption(limit: FilterLimit) -> str:
         f"How far each forecast's mean moves from that with the limit as it is ({given_text(limit.limit)}); whiskers "
         f"are standard errors of the change. Other filters and limits stay.{_nothing_moves(limit)}"
     )
+
+
+def _brief(limit: FilterLimit) -> str:
+    """Return the caption of the same chart where the sheet says once what all of them show."""
+    return f"{limit.filter}: as it is, {given_text(limit.limit)}.{_nothing_moves(limit)}"
 
 
 def _nothing_moves(limit: FilterLimit) -> str:

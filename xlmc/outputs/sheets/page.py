@@ -24,9 +24,10 @@ ROW = 17.25
 
 _LAST_CELL = (1_048_575, 16_383)
 """The row and column of the sheet's last cell, which is blank: the print area of a sheet that is not printed."""
-_EDGE = 0.25
+_EDGE = 0.2
 """Inches between the edge of the paper and the head or the foot."""
-_GAP = 9.0
+_GAP = 6.0
+_HEADING = 16.5
 _POINTS = 0.75
 """In a pixel."""
 _LINE = 15.0
@@ -117,7 +118,8 @@ class Page:
             if isinstance(shown.value, str):
                 lines = max(lines, self._lines(shown, first, end))
         if fit:  # every row, or LibreOffice chooses heights of its own
-            self.sheet.set_row(self.row, min(self.height + _LINE * (lines - 1), _HIGHEST))
+            further = min(_LINE, self.height) * (lines - 1)
+            self.sheet.set_row(self.row, min(self.height + further, _HIGHEST))
         self.row += 1
 
     def _widen(self, column: int, shown: Shown) -> None:
@@ -177,7 +179,7 @@ class Page:
     def heading(self, value: str, column: int = 0) -> None:
         """Write the heading of a section, with space above it."""
         self.sheet.set_row(self.row, _GAP)
-        self.sheet.set_row(self.row + 1, 18)
+        self.sheet.set_row(self.row + 1, _HEADING)
         self._begins.append(self.row + 1)
         self.put(self.row + 1, column, Shown(value, look="heading"))
         self.row += 2

@@ -14,15 +14,17 @@ from typing import Final
 
 __all__ = ["MARGINS", "MOST_ACROSS", "MOST_UPRIGHT", "SMALLEST", "Layout", "lay_out"]
 
-MARGINS: Final = {"left": 0.3, "right": 0.3, "top": 0.5, "bottom": 0.5}
+MARGINS: Final = {"left": 0.3, "right": 0.3, "top": 0.4, "bottom": 0.4}
 """In inches; the head and the foot of the page stand within them."""
 
-SMALLEST: Final = 0.62
+SMALLEST: Final = 0.615
 """The scale below which no sheet is printed that could be printed larger."""
 
-_ACROSS: Final = (11.0 * 72.0 - 43.2, 8.27 * 72.0 - 72.0)
-_UPRIGHT: Final = (8.27 * 72.0 - 43.2, 11.0 * 72.0 - 72.0)
-"""The width and height within the margins, of letter or A4, whichever has less."""
+_SIDES, _ENDS = 72.0 * (MARGINS["left"] + MARGINS["right"]), 72.0 * (MARGINS["top"] + MARGINS["bottom"])
+_UPRIGHT: Final = (8.27 * 72.0 - _SIDES, (11.0 * 72.0 - _ENDS) / (8.5 * 72.0 - _SIDES))
+_ACROSS: Final = (11.0 * 72.0 - _SIDES, (8.27 * 72.0 - _ENDS) / (11.69 * 72.0 - _SIDES))
+"""The width within the margins, of the narrower paper, letter or A4, and the height as a part of the width, of the one
+that is lower for its width: what is wide is printed larger on the wider paper, and has fewer rows there."""
 
 MOST_UPRIGHT: Final = _UPRIGHT[0] / SMALLEST
 MOST_ACROSS: Final = _ACROSS[0] / SMALLEST
@@ -82,12 +84,13 @@ def _on(
     upright: bool,
     whole: bool,
 ) -> Layout:
-    """Return the layout on pages of a width and a height, in points."""
+    """Return the layout on pages of a width, in points, and a height as a part of it."""
     across = min(1.0, page[0] / width)
-    both = min(across, page[1] / max(sum(heights), 1.0))
+    room = page[1] * max(width, page[0])
+    both = min(across, across * room / max(sum(heights), 1.0))
     if whole and (both >= SMALLEST or both == across):
         return Layout(upright, (), whole=True, scale=both, pages=1)
-    breaks, pages = _breaks(page[1] / across, heights, begins, repeated)
+    breaks, pages = _breaks(room, heights, begins, repeated)
     return Layout(upright, tuple(breaks), whole=False, scale=across, pages=pages)
 
 

@@ -22,7 +22,7 @@ _UNIT = 8.8
 _UNITS = 13
 WIDTHS = (24, 42, *[_UNIT] * _UNITS)
 _FIRST, _LAST = 1, len(WIDTHS) - 1
-_ROW = 14.25
+_ROW = 13.5
 _SPANS = {"limits": 2, "because": 5, "parameters": 2, "source": 3, "notes": 2, "error": 3, "message": 14, "first": 3}
 """How many columns of the sheet a column of a table takes; all others take one."""
 

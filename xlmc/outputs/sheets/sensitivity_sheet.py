@@ -99,6 +99,8 @@ _TORNADO_CHART: Final = (
     "correlations have no part in it."
 )
 
+_SPIDER: Final = "Spider: the same over five points of each assumption's own distribution before filtering."
+
 _BENT: Final = "Where the table says that it does not only rise or fall, the bar hides what lies between."
 
 
@@ -213,10 +215,11 @@ def _write_details(
 
 
 def _brief(forecast: ForecastSensitivity) -> list[str] | None:
-    """Return the captions of its first two charts, which the top of the sheet explains; None without both of them."""
-    if not (forecast.influences and forecast.bars):
+    """Return the captions of its first two charts, if the top of the sheet explains them; otherwise None."""
+    if not forecast.bars:
         return None
-    return ["Variance explained.", f"Tornado about the base case{_base_text(forecast)}."]
+    tornado = f"Tornado about the base case{_base_text(forecast)}."
+    return ["Variance explained.", tornado] if forecast.influences else [tornado, _SPIDER]
 
 
 def _base_text(found: ForecastSensitivity) -> str:

@@ -98,6 +98,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "listed": {"font_name": "Consolas", "font_size": 9, "valign": "vcenter"},
     "number": _NUMBER,
     "answer": _NUMBER | {"bold": True, "bg_color": "#BBDDF7"},
+    "range": _NUMBER | {"bold": True, "bg_color": "#BBDDF7"},
     "typed": _NUMBER | {"font_color": "#0B3D91", "bg_color": "#FFFBE0"},
     "quote": {"text_wrap": True, "valign": "vcenter", "align": "left", "indent": 1, "font_color": INK},
     "error": _NUMBER | {"font_color": _GREY},

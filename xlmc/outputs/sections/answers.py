@@ -1,0 +1,189 @@
+"""The question and the answer: warnings first, what was asked, the answers in words and as a table, what ± means."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from xlmc.analysis.results.record.errors_met import lost_sentences
+from xlmc.analysis.results.statements import meaning, statements
+from xlmc.analysis.results.statements.in_words import sampling_sentence
+from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
+from xlmc.outputs.document.measured import Measured
+from xlmc.outputs.document.parts import Block, Bullets, Content, Paragraph, Table
+from xlmc.outputs.sheets import cells
+from xlmc.outputs.sheets.cells import NONE, Shown
+from xlmc.outputs.summary import (
+    SummaryRow,
+    base_case,
+    base_text,
+    end_texts,
+    error_sentence,
+    frequent_texts,
+    percent,
+    question,
+    range_heading,
+    summarise,
+)
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import RunResult
+
+__all__ = ["answer_blocks", "answer_tables", "opening_sentences"]
+
+
+def answer_blocks(simulation: RunResult, names: Collection[str]) -> Iterator[Block]:
+    """Yield the question, and the answers of the forecasts of these names."""
+    rows = [row for row in summarise(simulation) if row.name in names]
+    for sentence in opening_sentences(simulation):
+        yield Paragraph(sentence, "warning")
+    asked = tuple(question(simulation))
+    yield Paragraph("".join(each.text for each in asked), phrases=asked)
+    said = [each for each in statements(simulation) if each.forecast in names]
+    if said:
+        leads = tuple(each.forecast if each.text.startswith(f"{each.forecast}: ") else "" for each in said)
+        yield Bullets(tuple(f"{each.text}." for each in said), leads=leads)
+        yield Paragraph(meaning(simulation.model.workbook, said), "small")
+    yield _answers(rows)
+    yield from _texts(rows)
+    yield Paragraph(error_sentence(simulation.model.workbook), "meaning")
+    ended = [] if simulation.stopped == ALL_TRIALS else [f"The run ended when {simulation.stopped.sentence}."]
+    yield Paragraph(" ".join([*_remarks(simulation, rows), *ended]), "small")
+
+
+def answer_tables(simulation: RunResult) -> Iterator[Block]:
+    """Yield the answers in tables for a sheet, with how many trials each rests on."""
+    rows = summarise(simulation)
+    yield _counted_answers(rows)
+    sampled, *others = _remarks(simulation, rows)
+    for sentence in (sampled, error_sentence(simulation.model.workbook), *others):
+        yield Paragraph(sentence, "small")
+    yield from _texts(rows)
+    yield from _thresholds(rows)
+
+
+def opening_sentences(simulation: RunResult) -> list[str]:
+    """Return the sentences before the answers.
+
+    They say which changed workbook was run, if one was; why not to use the answers, failed checks first; and how many
+    trials were lost to errors.
+    """
+    ended = simulation.stopped
+    missing = simulation.refused
+    return [
+        *([] if simulation.changed_from is None else [simulation.changed_from.sentence]),
+        *(f"An answer is missing: {warning}. The answers of other forecasts do not need it." for warning in missing),
+        *(f"Do not use these results as they are: {each}" for each in simulation.warnings if each not in missing),
+        *lost_sentences(simulation),
+        *([f"Fewer trials than were asked for: {ended.sentence}"] if ended.interrupted else []),
+    ]
+
+
+def _remarks(simulation: RunResult, rows: Sequence[SummaryRow]) -> list[str]:
+    return [sampling_sentence(simulation), *_range_sentences(rows), *_base_sentences(simulation)]
+
+
+def _answers(rows: Sequence[SummaryRow]) -> Table:
+    """Return the paper's table; thresholds stand beside the ranges."""
+    thresholds = any(row.threshold is not None for row in rows)
+    mixed = _is_mixed(rows)
+    heads = ["Forecast", "Units", *_heads(rows), *["Threshold", "Above threshold"] * thresholds]
+    widths = [2.4, 0.9, 1.6, 1.6, 1.6, 1.6, 1.1, *[1.0] * mixed, *[1.3, 1.5] * thresholds]
+    lines = []
+    for row in rows:
+        line = [row.name, row.unit, *_numbers(row, mixed)]
+        if thresholds:
+            limit = "" if row.threshold is None else row.form.number(row.threshold)
+            line.append(replace(cells.exact(row.threshold, row.form), written=limit))
+            line.append(Measured(row.above, "share"))
+        lines.append(tuple(line))
+    caption = "The answers, from the accepted trials; each number with its standard error."
+    return Table("", tuple(heads), tuple(lines), range(2, len(heads)), tuple(widths), caption)
+
+
+def _counted_answers(rows: Sequence[SummaryRow]) -> Table:
+    mixed = _is_mixed(rows)
+    lines = [(row.name, row.unit, cells.count(row.trials), *_numbers(row, mixed)) for row in rows]
+    heads = ("Forecast", "Units", "Accepted trials", *_heads(rows))
+    return Table("", heads, tuple(lines), caption="Answers, from the accepted trials.")
+
+
+def _is_mixed(rows: Sequence[SummaryRow]) -> bool:
+    """Whether forecasts have ranges that hold different shares of the trials."""
+    return len({row.share for row in rows}) > 1
+
+
+def _heads(rows: Sequence[SummaryRow]) -> list[str]:
+    heads = ["Mean", "Standard deviation", f"{range_heading(rows)} from", "to", "Base case"]
+    return [*heads, "Range holds"] if _is_mixed(rows) else heads
+
+
+def _numbers(row: SummaryRow, mixed: bool) -> Iterator[Content]:
+    """Yield the mean or the share of an answer, its spread, its range and its base case."""
+    if row.is_share:
+        yield Measured(row.answer, "share", look="answer", nothing=NONE)
+    else:
+        yield Measured(row.mean, form=row.form, look="answer", nothing=NONE)
+    deviation, *ends = row.spread
+    yield Measured(deviation, "spread", row.form, look="answer", nothing=NONE)
+    for end, text in zip(ends, end_texts(row), strict=True):
+        yield Measured(end, form=row.form, look="range", written=text, nothing=NONE)
+    base = base_text(row)
+    yield Shown(base) if row.is_share else replace(cells.exact(row.base, row.form, row.mean), written=base)
+    if mixed:
+        yield Shown(percent(row.share))
+
+
+def _texts(rows: Sequence[SummaryRow]) -> Iterator[Table]:
+    """Yield how often each text is the answer, for each forecast whose answers are texts."""
+    for row in rows:
+        if row.categories:
+            head = f"{row.name} ({row.units})" if row.units else row.name
+            told, others, left = frequent_texts(row.categories)
+            lines: list[tuple[Content, ...]] = [
+                (text or "(empty)", cells.count(round(share.value * share.n)), Measured(share, "share", interval=True))
+                for text, share in told.items()
+            ]
+            if others:
+                lines.append((others, cells.count(round(left * row.trials)), Shown(left, "0.0%")))
+            caption = f"{row.name}: how often each text is the answer."
+            yield Table("", (head, "Trials", "Share"), tuple(lines), widths=(3.0, 1.0, 1.5), caption=caption)
+
+
+def _thresholds(rows: Sequence[SummaryRow]) -> Iterator[Table]:
+    """Yield how probable values above the thresholds are; nothing where there is no threshold."""
+    lines = [
+        (
+            row.name,
+            row.units,
+            cells.exact(row.threshold, row.form),
+            Measured(row.above, "share", interval=True, nothing=NONE),
+        )
+        for row in rows
+        if row.threshold is not None
+    ]
+    if lines:
+        heads = ("Forecast", "Units", "Threshold", "Above it")
+        yield Table("", heads, tuple(lines), caption="Values above a threshold.")
+
+
+def _range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
+    """Return the sentence that says what a central range is."""
+    shares = {row.share for row in rows}
+    if len(shares) != 1:
+        return ["Central ranges leave out as many accepted trials below as above."]
+    share = shares.pop()
+    outside = percent((1 - share) / 2)
+    return [f"The {percent(share)} range is central: {outside} of the accepted trials lie below it, {outside} above."]
+
+
+def _base_sentences(simulation: RunResult) -> list[str]:
+    """Return the sentences that say what the base case is, and which filters it would not pass."""
+    found = base_case(simulation)
+    if found is None:
+        return ["There is no base case: the cell of an assumption is blank."]
+    said = "The base case has every assumption at the value in its cell"
+    if not found.rejected_by:
+        return [f"{said}."]
+    return [f"{said}. As a trial it would be rejected by: {', '.join(found.rejected_by)}."]

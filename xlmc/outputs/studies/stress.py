@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Forecast
     from xlmc.montecarlo.statistics import Estimate
     from xlmc.outputs.document.measured import Measured
-    from xlmc.outputs.document.parts import Block, Figure, Table
+    from xlmc.outputs.document.parts import Block, Content, Figure, Table
     from xlmc.outputs.study_report import StudyReport
 
 __all__ = ["stress_report"]
@@ -147,7 +147,7 @@ def _table(found: Stressed, forecast: Forecast, ranked: list[tuple[Tail, Tail]])
         heads += ["Share", "Change, points"]
     if "above" in base.numbers:
         heads += [f"Above {form.number(forecast.threshold or 0.0)}", "Change, points"]
-    rows = [("all trials", "", *_numbers(found, forecast, base))]
+    rows: list[tuple[Content, ...]] = [("all trials", "", *_numbers(found, forecast, base))]
     for tail in (each for pair in ranked for each in pair):
         if forecast.name in tail.parts:
             cells = _numbers(found, forecast, tail.parts[forecast.name])

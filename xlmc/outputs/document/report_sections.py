@@ -102,7 +102,7 @@ def _scene(material: Material) -> Iterator[Block]:
 def _trials_over_scene(material: Material) -> Iterator[Block]:
     drawn = drawn_trials(material.simulation)
     if drawn is not None:
-        yield material.figure(
+        yield Figure(
             drawn,
             f"{drawn.said}: the curves are those of the workbook's chart, as it stored them.",
         )

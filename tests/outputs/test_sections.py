@@ -13,11 +13,11 @@ from xlmc.cli.simulate import show_run
 from xlmc.outputs import save
 from xlmc.outputs.document import SECTIONS, Wanted, document_bytes
 from xlmc.outputs.document.build import build
+from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.parts import Bar, Bars, Bullets, Chart, Code, Figure, Line, Lines, Paragraph, Table
 from xlmc.outputs.document.sections import OUTPUTS, Section
 from xlmc.outputs.notebook import run_html
 from xlmc.outputs.page import page_text
-from xlmc.outputs.sheets.cells import Shown
 
 SAID = ("Moon phase", "The moon was new.", "Full moons", "1,234.5", "Phase of the night", "a <b>", "xlmc moon")
 

@@ -207,8 +207,8 @@ def _show_sentences(run: RunResult) -> None:
 def _show_evidence(run: RunResult) -> None:
     """Print whether the evidence agrees, and what each item moves; nothing where none is used."""
     from xlmc.errors import capitalised
+    from xlmc.outputs.document.content.evidence import item_table, means_tables, trials_sentence
     from xlmc.outputs.document.parts import Paragraph
-    from xlmc.outputs.sections.evidence import item_table, means_tables, trials_sentence
 
     found = run.agreement
     if found is None:
@@ -221,7 +221,7 @@ def _show_evidence(run: RunResult) -> None:
 def _show_scenarios(run: RunResult) -> None:
     """Print what each scenario changes and accepts, then a table for each forecast; nothing where they were not run."""
     from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
-    from xlmc.outputs.sections.scenarios import scenario_blocks
+    from xlmc.outputs.document.content.scenarios import scenario_blocks
 
     show(scenario_blocks(scenario_answers(run), impossible_scenarios(run)))
 

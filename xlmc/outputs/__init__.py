@@ -37,16 +37,16 @@ def save(
 
 
 def _sheet(heading: str, blocks: list[Block]) -> ResultSheet:
-    from xlmc.outputs.document.xlsx_writer import sheet_widths
     from xlmc.outputs.sheets.book import ResultSheet
+    from xlmc.outputs.sheets.xlsx_writer import sheet_widths
 
     return ResultSheet(heading[:_TAB], partial(_write, heading, blocks), tuple(sheet_widths(blocks)))
 
 
 def _write(heading: str, blocks: list[Block], page: Page, run: Writing) -> None:
-    from xlmc.outputs.document.xlsx_writer import Charting, write_blocks
     from xlmc.outputs.sheets.page import Page
     from xlmc.outputs.sheets.styles import Styles
+    from xlmc.outputs.sheets.xlsx_writer import Charting, write_blocks
 
     page.title(heading, run.name)
 

@@ -26,11 +26,11 @@ from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.keywords import forecast_named
 from xlmc.montecarlo.statistics import rank_correlation
 from xlmc.montecarlo.statistics.number_text import count_text, in_signs, signs, styled_text
+from xlmc.outputs.document.colours import DARK, GRID, INK, LIGHT
 from xlmc.outputs.document.drawn_trials import drawn_trials
 from xlmc.outputs.document.parts import Lines
 from xlmc.outputs.histogram import Figure as Drawn
 from xlmc.outputs.histogram import figures_of, short_name
-from xlmc.outputs.sheets.styles import DARK, GRID, INK, LIGHT
 from xlmc.outputs.summary import answer_text, central_text, percent
 
 if TYPE_CHECKING:

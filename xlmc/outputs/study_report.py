@@ -193,8 +193,8 @@ def _page(report: StudyReport) -> str:
 
 def book_parts(report: StudyReport) -> dict[str, bytes]:
     """Return the report as the parts of a workbook."""
-    from xlmc.outputs.document.xlsx_writer import Charting, sheet_widths, write_blocks
     from xlmc.outputs.sheets.exact_book import ExactBook
+    from xlmc.outputs.sheets.xlsx_writer import Charting, sheet_widths, write_blocks
 
     with ExactBook() as made:
         made.set_properties({"created": CREATED})

@@ -7,11 +7,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.montecarlo.statistics import Estimate, format_estimate
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import Shown, count, shown_text
 from xlmc.outputs.document.element import Html
 from xlmc.outputs.document.html_writer import estimate_html, shown_html
 from xlmc.outputs.page.flow import Flow
-from xlmc.outputs.sheets import cells, results_sheet, statistics_sheet
-from xlmc.outputs.sheets.cells import Shown, count, shown_text
+from xlmc.outputs.sheets import results_sheet, statistics_sheet
 
 
 def test_headings_paragraphs_and_tables_follow_each_other():

@@ -7,7 +7,7 @@ import openpyxl
 import pytest
 from xlsxwriter import Workbook
 
-from xlmc.outputs.sheets.cells import Shown
+from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.sheets.exact_book import ExactSheet
 from xlmc.outputs.sheets.page import LONGEST_TEXT, ROW, Page, cut
 from xlmc.outputs.sheets.styles import Styles

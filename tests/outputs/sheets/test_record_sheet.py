@@ -5,7 +5,7 @@ import re
 import pytest
 
 from xlmc.analysis.results.record import make_record
-from xlmc.outputs.sheets.cells import number_format
+from xlmc.outputs.document.cells import number_format
 
 
 @pytest.fixture(scope="session")

@@ -12,8 +12,8 @@ from openpyxl.utils import range_boundaries
 from packed_sheets import packed_sheets
 
 from xlmc.analysis.studies.sensitivity import sensitivities
+from xlmc.outputs.document.cells import NOISE
 from xlmc.outputs.page.flow import Flow
-from xlmc.outputs.sheets.cells import NOISE
 from xlmc.outputs.sheets.limits_sheet import moved_caption
 from xlmc.outputs.sheets.sensitivity_sheet import write_influences
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable, Iterator
 
 from xlmc.analysis.results.statements.in_words import plain_text
 from xlmc.montecarlo.statistics import Estimate
+from xlmc.outputs.document.cells import NONE, Shown, shown_text
 from xlmc.outputs.document.drawings import FONT, drawn
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.measured import HEADS, Measured
@@ -24,7 +25,6 @@ from xlmc.outputs.document.parts import (
     Picture,
     Table,
 )
-from xlmc.outputs.sheets.cells import NONE, Shown, shown_text
 from xlmc.outputs.summary import estimate_text, share_text
 
 __all__ = ["blocks_html", "estimate_html", "number", "picture_html", "share_html", "shown_html"]

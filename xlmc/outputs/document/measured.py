@@ -10,8 +10,8 @@ from typing import Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics import Estimate, format_estimate
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import BLANK, Shown
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import BLANK, Shown
 from xlmc.outputs.summary import share_text
 
 __all__ = ["HEADS", "Measured"]

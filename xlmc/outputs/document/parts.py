@@ -1,7 +1,7 @@
 """The blocks of a document, whatever it is written as: all writers read the same blocks, so they cannot disagree.
 
 Sections make the blocks from a run or a study. They are written as PDF (`typst_writer`), for Word (`docx_writer`), as
-HTML for pages and notebooks (`html_writer`), onto sheets (`xlsx_writer`) and to the terminal (`xlmc.cli.blocks`). All
+HTML for pages and notebooks (`html_writer`), onto sheets (`xlmc.outputs.sheets.xlsx_writer`) and to the terminal (`xlmc.cli.blocks`). All
 texts are plain; a writer makes sure that none becomes markup. No writer formats a number: a cell that holds one brings
 its format along.
 """
@@ -15,8 +15,8 @@ from typing import Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics.number_text import signs
+from xlmc.outputs.document.cells import Shown, shown_text
 from xlmc.outputs.document.measured import Measured
-from xlmc.outputs.sheets.cells import Shown, shown_text
 from xlmc.outputs.summary import Phrase
 
 __all__ = [

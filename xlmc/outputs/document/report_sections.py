@@ -19,6 +19,12 @@ from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.statistics.number_text import count_text, exact_text, fixed_text, number_text
 from xlmc.outputs.document.charts import influence_chart, shape_chart, shares_chart
+from xlmc.outputs.document.content.answers import answer_blocks
+from xlmc.outputs.document.content.checks import check_blocks
+from xlmc.outputs.document.content.evidence import evidence_blocks
+from xlmc.outputs.document.content.filters import filter_blocks
+from xlmc.outputs.document.content.notices import notice_blocks
+from xlmc.outputs.document.content.scenarios import scenario_blocks
 from xlmc.outputs.document.drawings import forecast_drawing
 from xlmc.outputs.document.drawn_trials import drawn_trials
 from xlmc.outputs.document.equations import equations_of
@@ -27,12 +33,6 @@ from xlmc.outputs.document.parts import Block, Bullets, Code, Content, Figure, P
 from xlmc.outputs.document.scene_drawing import scene_drawing
 from xlmc.outputs.filter_effect import filter_effect_of
 from xlmc.outputs.histogram import figures_of, not_drawn
-from xlmc.outputs.sections.answers import answer_blocks
-from xlmc.outputs.sections.checks import check_blocks
-from xlmc.outputs.sections.evidence import evidence_blocks
-from xlmc.outputs.sections.filters import filter_blocks
-from xlmc.outputs.sections.notices import notice_blocks
-from xlmc.outputs.sections.scenarios import scenario_blocks
 from xlmc.outputs.summary import (
     answer_text,
     central_text,

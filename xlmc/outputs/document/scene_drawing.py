@@ -14,9 +14,9 @@ from xml.etree.ElementTree import Element
 
 from xlmc.excel.workbook.safe_xml import tree
 from xlmc.excel.workbook.workbook import Workbook
+from xlmc.outputs.document.colours import GRID, INK
 from xlmc.outputs.document.drawings import Scale, drawing, line_to, path_of, scale_of, text_at
 from xlmc.outputs.document.parts import Drawing
-from xlmc.outputs.sheets.styles import GRID, INK
 
 __all__ = ["SceneLine", "scene_drawing", "scene_lines"]
 

@@ -27,6 +27,8 @@ from xlmc.montecarlo.statistics import (
 )
 from xlmc.montecarlo.statistics.estimate import finite
 from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.outputs.document.content.answers import opening_sentences
+from xlmc.outputs.document.content.scenarios import scenario_blocks
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import Figure, bars_of, multiples
@@ -42,8 +44,6 @@ from xlmc.outputs.page.sheet_sections import (
     record,
     statistics,
 )
-from xlmc.outputs.sections.answers import opening_sentences
-from xlmc.outputs.sections.scenarios import scenario_blocks
 from xlmc.outputs.summary import SummaryRow, base_case, error_sentence, share_text, shares_of
 
 if TYPE_CHECKING:

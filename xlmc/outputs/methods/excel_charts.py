@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.analysis.studies.methods import STATISTICS, Curve, Study
+from xlmc.outputs.document.cells import Shown
+from xlmc.outputs.document.colours import GRID, INK
 from xlmc.outputs.methods.matplotlib_figure import OTHER, STYLES, Style
 from xlmc.outputs.methods.speed_chart import HOW_TO_READ, Line, Picture, column_of, guides_of, picture_of, spread
-from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.page import Page
-from xlmc.outputs.sheets.styles import FONT, GRID, INK, straight
+from xlmc.outputs.sheets.styles import FONT, straight
 
 if TYPE_CHECKING:
     from xlsxwriter.chart_scatter import ChartScatter

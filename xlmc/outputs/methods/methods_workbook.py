@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from xlmc.analysis.studies.methods import STATISTICS, Curve, Runs, Study
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.methods import methods_tables
 from xlmc.outputs.methods.excel_charts import DATA, HEADER, write_charts
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.page import Page
 from xlmc.outputs.sheets.styles import Styles
 

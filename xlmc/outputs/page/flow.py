@@ -8,10 +8,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from typing import Any
 
+from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.element import Html
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.document.parts import Block, Heading, Paragraph, Table
-from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.page import Page
 
 __all__ = ["Flow"]

@@ -13,19 +13,19 @@ from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.number_text import count_text, styled_text, whole_text
+from xlmc.outputs.document.cells import NONE
 from xlmc.outputs.document.charts import shape_chart
+from xlmc.outputs.document.content.answers import answer_blocks
+from xlmc.outputs.document.content.checks import check_blocks
+from xlmc.outputs.document.content.evidence import evidence_blocks
+from xlmc.outputs.document.content.filters import count_blocks, filter_blocks
+from xlmc.outputs.document.content.notices import notice_blocks
+from xlmc.outputs.document.content.scenarios import scenario_blocks
 from xlmc.outputs.document.element import EMPTY, Html, element
 from xlmc.outputs.document.html_writer import blocks_html, estimate_html, number, picture_html
 from xlmc.outputs.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of
 from xlmc.outputs.page.flow import Flow
-from xlmc.outputs.sections.answers import answer_blocks
-from xlmc.outputs.sections.checks import check_blocks
-from xlmc.outputs.sections.evidence import evidence_blocks
-from xlmc.outputs.sections.filters import count_blocks, filter_blocks
-from xlmc.outputs.sections.notices import notice_blocks
-from xlmc.outputs.sections.scenarios import scenario_blocks
 from xlmc.outputs.sheets.assumptions_sheet import MOVED, NARROWED, STRATIFIED, meaning_text, write_correlations
-from xlmc.outputs.sheets.cells import NONE
 from xlmc.outputs.sheets.certainty_sheet import write_ranges
 from xlmc.outputs.sheets.pairs_sheet import pair_sentences, write_pair_table
 from xlmc.outputs.sheets.statistics_sheet import write_forecast

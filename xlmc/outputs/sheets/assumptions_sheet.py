@@ -17,11 +17,12 @@ from xlmc.analysis.results.statements.in_words import distribution_text, status
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import Shown
+from xlmc.outputs.document.colours import DARK, LIGHT
 from xlmc.outputs.filter_effect import DRAWN, FilterEffect, Marginal, filter_effect_of, shapes_of
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.curves_sheet import SHARE
-from xlmc.outputs.sheets.styles import DARK, LIGHT, straight
+from xlmc.outputs.sheets.styles import straight
 
 if TYPE_CHECKING:
     from xlsxwriter.chart import Chart

@@ -6,10 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import Shown
+from xlmc.outputs.document.colours import DARK, LIGHT
 from xlmc.outputs.histogram import Figure, Histogram
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import Shown
-from xlmc.outputs.sheets.styles import DARK, LIGHT, Reference, across, finish, upwards
+from xlmc.outputs.sheets.styles import Reference, across, finish, upwards
 from xlmc.outputs.summary import percent
 
 if TYPE_CHECKING:

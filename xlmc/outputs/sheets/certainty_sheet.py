@@ -18,8 +18,8 @@ from xlmc.analysis.results.statements import certainties, meaning, stated_range,
 from xlmc.montecarlo.definitions.stating import NOT_ROUNDED
 from xlmc.montecarlo.statistics import proportion
 from xlmc.montecarlo.statistics.number_text import count_text
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import Shown
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.summary import frequent_texts, shares_of
 
 if TYPE_CHECKING:

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.histogram import Figure, varying
 from xlmc.outputs.sheets.bins_sheet import BinsAt, histogram_chart
-from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.curve_charts import MOST, cumulative_charts, group_by_units, overlay_chart, trend_chart
 from xlmc.outputs.sheets.curves_sheet import Curves
 from xlmc.outputs.sheets.page import ROW

@@ -22,11 +22,12 @@ from numpy.typing import NDArray
 from xlmc.montecarlo.columns import release
 from xlmc.montecarlo.statistics import percentiles
 from xlmc.montecarlo.statistics.sample import Sample
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import Shown
+from xlmc.outputs.document.colours import DARK, INK, LIGHT
 from xlmc.outputs.histogram import Figure, Histogram, multiples
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import Shown
 from xlmc.outputs.sheets.curves_sheet import SHARE, Curves, TableAt
-from xlmc.outputs.sheets.styles import COLOURS, DARK, INK, LIGHT, across, axis_format, finish, straight, upwards
+from xlmc.outputs.sheets.styles import COLOURS, across, axis_format, finish, straight, upwards
 from xlmc.outputs.summary import percent
 
 if TYPE_CHECKING:

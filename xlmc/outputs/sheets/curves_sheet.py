@@ -6,7 +6,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from xlmc.outputs.sheets.cells import Shown
+from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.sheets.styles import Reference
 
 if TYPE_CHECKING:

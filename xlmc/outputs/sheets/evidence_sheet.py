@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from xlmc.outputs.document.xlsx_writer import write_blocks
-from xlmc.outputs.sections.evidence import evidence_blocks
+from xlmc.outputs.document.content.evidence import evidence_blocks
+from xlmc.outputs.sheets.xlsx_writer import write_blocks
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult

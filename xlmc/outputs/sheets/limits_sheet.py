@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import given_text
 from xlmc.montecarlo.statistics.number_text import count_text
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import Shown
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.sheets.sensitivity_charts import (
     CHART_ROWS,
     CHARTED,

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 from itertools import count, islice
 from typing import TYPE_CHECKING
 
-from xlmc.outputs.sheets.cells import LOGICAL, NONE, Shown, shown_text
+from xlmc.outputs.document.cells import LOGICAL, NONE, Shown, shown_text
 from xlmc.outputs.sheets.paper import MARGINS, lay_out
 
 if TYPE_CHECKING:

@@ -10,11 +10,12 @@ import numpy as np
 
 from xlmc.analysis.results.statements import PAIRS, Pair, pairs_of
 from xlmc.montecarlo.statistics.number_text import count_text
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import BLANK, Shown
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import BLANK, Shown
+from xlmc.outputs.document.colours import DARK
 from xlmc.outputs.sheets.charts_sheet import Drawing, place_drawings
 from xlmc.outputs.sheets.curves_sheet import Curves, TableAt
-from xlmc.outputs.sheets.styles import DARK, Reference, across, axis_format, bounds, finish, straight, upwards
+from xlmc.outputs.sheets.styles import Reference, across, axis_format, bounds, finish, straight, upwards
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray

@@ -11,7 +11,7 @@ from itertools import count, repeat
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.record import Entry, Record, RecordTable, Section, Value
-from xlmc.outputs.sheets.cells import NONE, Shown, number_format
+from xlmc.outputs.document.cells import NONE, Shown, number_format
 
 if TYPE_CHECKING:
     from xlmc.outputs.sheets.page import Page

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.outputs.document.content.answers import answer_tables, opening_sentences
+from xlmc.outputs.document.content.checks import check_blocks
+from xlmc.outputs.document.content.filters import count_blocks, filter_blocks
+from xlmc.outputs.document.content.notices import notice_blocks
 from xlmc.outputs.document.parts import Block, Heading, Paragraph
-from xlmc.outputs.document.xlsx_writer import write_blocks
-from xlmc.outputs.sections.answers import answer_tables, opening_sentences
-from xlmc.outputs.sections.checks import check_blocks
-from xlmc.outputs.sections.filters import count_blocks, filter_blocks
-from xlmc.outputs.sections.notices import notice_blocks
+from xlmc.outputs.sheets.xlsx_writer import write_blocks
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult

@@ -5,8 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
-from xlmc.outputs.document.xlsx_writer import write_blocks
-from xlmc.outputs.sections.scenarios import scenario_blocks
+from xlmc.outputs.document.content.scenarios import scenario_blocks
+from xlmc.outputs.sheets.xlsx_writer import write_blocks
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult

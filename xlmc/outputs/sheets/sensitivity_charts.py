@@ -10,9 +10,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
-from xlmc.outputs.sheets.cells import Shown
+from xlmc.outputs.document.cells import Shown
+from xlmc.outputs.document.colours import DARK, GRID, INK, LIGHT
 from xlmc.outputs.sheets.page import ROW
-from xlmc.outputs.sheets.styles import AXIS, DARK, FONT, GRID, INK, LIGHT, axis_format, no_reference, straight
+from xlmc.outputs.sheets.styles import AXIS, FONT, axis_format, no_reference, straight
 
 if TYPE_CHECKING:
     from xlsxwriter.chart_bar import ChartBar

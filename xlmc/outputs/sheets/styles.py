@@ -10,6 +10,8 @@ import math
 from datetime import datetime
 from typing import TYPE_CHECKING, Any, Final
 
+from xlmc.outputs.document.colours import GRID, INK
+
 if TYPE_CHECKING:
     from xlsxwriter.chart import Chart
     from xlsxwriter.format import Format
@@ -19,11 +21,7 @@ __all__ = [
     "AXIS",
     "COLOURS",
     "CREATED",
-    "DARK",
     "FONT",
-    "GRID",
-    "INK",
-    "LIGHT",
     "SIZE",
     "Reference",
     "Styles",
@@ -39,16 +37,6 @@ __all__ = [
 
 CREATED = datetime(2000, 1, 1)
 """The date of creation of every workbook: XlsxWriter would write today's, and no two files would be the same."""
-
-INK = "#1F3044"
-
-GRID = "#D5DBE3"
-
-DARK = "#2F6DA8"
-"""Bars inside the central range."""
-
-LIGHT = "#BCD3E8"
-"""Bars outside it."""
 
 COLOURS: Final = ("#2F6DA8", "#D1662B", "#4D8B4A", "#8659A5", "#B5912B", "#3B9C9C", "#B04A66", "#5B6470")
 """Colours of curves in one chart; most people who do not see red and green can tell them apart."""

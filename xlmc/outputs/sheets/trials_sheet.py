@@ -12,8 +12,8 @@ from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.simulation.simulation import weight_heading
 from xlmc.montecarlo.statistics.number_text import count_text
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import Shown
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.sheets.styles import Reference
 
 if TYPE_CHECKING:

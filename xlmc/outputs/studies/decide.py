@@ -110,8 +110,8 @@ def _blocks(found: Decided) -> Iterator[Block]:
 
 
 def _table(found: Decided, index: int) -> Table:
+    from xlmc.outputs.document.content.scenarios import answer_heads, answer_rows
     from xlmc.outputs.document.parts import Table
-    from xlmc.outputs.sections.scenarios import answer_heads, answer_rows
 
     answers = [found.base, *(each.answers for each in found.combinations)]
     decisions = [", ".join(filter(None, (each.name, each.units))) for each in found.decisions]

@@ -10,10 +10,10 @@ from xlmc.errors import capitalised
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.diagnostics.agreement import Verdict
 from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import NONE, Shown
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Block, Content, Paragraph, Table
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import NONE, Shown
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.diagnostics.agreement import Agreement, Answer, ItemAgreement

@@ -10,10 +10,10 @@ from xlmc.analysis.results.record.errors_met import lost_sentences
 from xlmc.analysis.results.statements import meaning, statements
 from xlmc.analysis.results.statements.in_words import sampling_sentence
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import NONE, Shown
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Block, Bullets, Content, Paragraph, Table
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import NONE, Shown
 from xlmc.outputs.summary import (
     SummaryRow,
     base_case,

@@ -6,10 +6,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from xlmc.montecarlo.diagnostics.checking import checks_sentence
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import NONE, Shown
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Block, Content, Paragraph, Table
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import NONE, Shown
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.diagnostics.checking import CheckResult

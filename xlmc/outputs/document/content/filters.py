@@ -10,10 +10,10 @@ from xlmc.analysis.results.statements.in_words import REJECTED_SENTENCE, discard
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.statistics import Estimate, proportion
 from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import NONE
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Block, Content, Heading, Paragraph, Table
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import NONE
 from xlmc.outputs.summary import share_text
 
 if TYPE_CHECKING:

@@ -11,6 +11,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN
+from xlmc.outputs.document.cells import BLANK, Shown, shown_text, spread_format
+from xlmc.outputs.document.colours import DARK, INK, LIGHT
 from xlmc.outputs.document.drawings import COLOURS
 from xlmc.outputs.document.measured import HEADS, Measured
 from xlmc.outputs.document.parts import (
@@ -28,8 +30,7 @@ from xlmc.outputs.document.parts import (
     Table,
     cell_text,
 )
-from xlmc.outputs.sheets.cells import BLANK, Shown, shown_text, spread_format
-from xlmc.outputs.sheets.styles import DARK, INK, LIGHT, SIZE, across, bounds, no_reference, straight, upwards
+from xlmc.outputs.sheets.styles import SIZE, across, bounds, no_reference, straight, upwards
 
 if TYPE_CHECKING:
     from xlsxwriter.chart import Chart as ExcelChart

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate, format_estimate, proportion
-from xlmc.outputs.sheets.cells import estimate, paired_format, share_format, shown_text, spread_format
+from xlmc.outputs.document.cells import estimate, paired_format, share_format, shown_text, spread_format
 
 PAIRED = [
     (11.79946, 0.01256, "#,##0.000"),

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Final
 from xlmc.analysis.results.statements.in_words import changes_text
 from xlmc.montecarlo.simulation.simulation import FEW
 from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import NONE
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Block, Content, Paragraph, Table
-from xlmc.outputs.sheets import cells
-from xlmc.outputs.sheets.cells import NONE
 from xlmc.outputs.summary import percent
 
 if TYPE_CHECKING:

@@ -1,9 +1,9 @@
 """The blocks of a document, whatever it is written as: all writers read the same blocks, so they cannot disagree.
 
 Sections make the blocks from a run or a study. They are written as PDF (`typst_writer`), for Word (`docx_writer`), as
-HTML for pages and notebooks (`html_writer`), onto sheets (`xlmc.outputs.sheets.xlsx_writer`) and to the terminal (`xlmc.cli.blocks`). All
-texts are plain; a writer makes sure that none becomes markup. No writer formats a number: a cell that holds one brings
-its format along.
+HTML for pages and notebooks (`html_writer`), onto sheets (`xlmc.outputs.sheets.xlsx_writer`) and to the terminal
+(`xlmc.cli.blocks`). All texts are plain; a writer makes sure that none becomes markup. No writer formats a number: a
+cell that holds one brings its format along.
 """
 
 from __future__ import annotations

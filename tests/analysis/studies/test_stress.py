@@ -202,7 +202,7 @@ def test_ranges_of_answers(words, low, high, trials):
         ({"scenarios": ["between 3 and 2"]}, "the first end is not below the second"),
         ({"assumptions": ["c"]}, "'c'"),
         ({"forecasts": ["x"]}, "'x'"),
-        ({"trials": 20}, "too few to look at parts"),
+        ({"trials": 200}, "a tail of 10 % then has fewer than 30. Give more trials"),
     ],
 )
 def test_what_cannot_be_asked_is_refused(more, message):

@@ -263,11 +263,10 @@ def stress(
     tell("the workbook as it is")
     options = RunOptions.of(trials=trials, seed=seed, engine=engine, jobs=jobs, evidence="rejection", keep_inputs=None)
     run = run_model(with_plain_sampling(model), options)
-    if run.accepted < _LEAST:
-        message = (
-            f"{count_text(run.accepted)} of {count_text(run.trials)} trials were accepted, too few to look at parts"
-        )
-        raise SimulationError(message, hint="Give more trials (-n); xlmc simulate says what each filter rejects")
+    if run.accepted * share < 100.0 * _LEAST:
+        accepted = f"{count_text(run.accepted)} of {count_text(run.trials)} trials"
+        message = f"{accepted} were accepted, and a tail of {number_text(share)} % then has fewer than {_LEAST}"
+        raise SimulationError(message, hint="Give more trials (-n), or larger tails (--share)")
     columns = {each.name: _Answers.of(run, each) for each in told}
     valueless = tuple(name for name, each in columns.items() if each.accepted.m < _LEAST)
     told = [each for each in told if each.name not in valueless]

@@ -36,7 +36,8 @@ def optimise_report(found: Optimised, again: str = "") -> StudyReport:
     repeated: list[Block] = [Paragraph("To repeat it:", "small"), Code(again)] if again else []
     blocks = [*_sentences(found), *_blocks(found), _meaning(found), *repeated]
     title = f"The {found.goal.words}"
-    return StudyReport(title, below, blocks_of(blocks), "Optimum", partial(_as_json, found, again), run)
+    kept = None if run.model.definitions.feeding is not None else run  # no file holds fed books with these decisions
+    return StudyReport(title, below, blocks_of(blocks), "Optimum", partial(_as_json, found, again), kept)
 
 
 def _with_values(found: Optimised, values: tuple[float, ...]) -> str:

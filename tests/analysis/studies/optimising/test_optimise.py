@@ -493,3 +493,25 @@ def test_further_statistics_and_their_errors(book, text, value):
         found.append((measured.value, measured.error))
     values, errors = np.array(found).T
     assert 0.75 < values.std(ddof=1) / errors.mean() < 1.3
+
+
+def test_decisions_that_change_nothing_are_told(book):
+    model = xlmc.load(book(PRICE, profit="=Inputs!B2"))
+    assert "All candidates give the same" in str(model.optimise(maximise="mean of Profit", trials=500))
+    found = xlmc.load(book(ORDER)).optimise(maximise="mean of Profit", trials=20_000)
+    assert "All candidates give the same" not in str(found)
+
+
+def test_workbooks_that_feed_each_other_are_optimised(book, tmp_path):
+    """The demand is that of another workbook, uniform from 100 to 150: an order of 100 sells always, at 5 less 3."""
+    sheets = {
+        "In": [["Name", "Value", "Low", "High"], ["d", 50, 0, 50]],
+        "Out": [["Name", "Value"], ["More", "=In!B2+100"]],
+    }
+    workbook_of(sheets, {"xlmc_assumptions": "In!A1:D2", "xlmc_forecasts": "Out!A1:B2"}).save(tmp_path / "more.xlsx")
+    feeds = {"Demand": f"{tmp_path / 'more.xlsx'}!More"}
+    model = xlmc.load(book(["Order", "=Inputs!B6", 0, 100, 25, None]), feeds=feeds)
+    found = model.optimise(maximise="mean of Profit", trials=1_000)
+    assert found.values == {"Order": 100}
+    assert found.found.value == pytest.approx(200)
+    assert found.save(tmp_path / "found.json").exists()

@@ -30,7 +30,7 @@ from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.scenarios import Scenario, Typed
 from xlmc.montecarlo.loop.candidates import CandidateTrials, Values
 from xlmc.montecarlo.loop.stopping import Interruption
-from xlmc.montecarlo.model.loading import build_model
+from xlmc.montecarlo.model.loading import build_model, model_with_values
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import ERROR_SHARE, RunResult
@@ -345,6 +345,9 @@ def _two_digits(number: float) -> float:
 def _run(model: CompiledModel, decisions: Sequence[Decision], best: Values, options: RunOptions) -> RunResult:
     """Run the workbook with the best decisions typed in, which the run then has as its file."""
     pairs = list(zip(decisions, best, strict=True))
+    if model.definitions.feeding is not None:  # no file holds all of its workbooks
+        typed = {each.cell: each.content(value) for each, value in pairs}
+        return run_model(with_plain_sampling(model_with_values(model, typed)), options)
     changes = tuple(Typed(each.cell, each.content(value), named=each.name) for each, value in pairs)
     edited = edited_workbook(model, Scenario(values_text(decisions, best), changes))
     book = read_workbook(edited.data, model.workbook.name, model.workbook.functions)
@@ -385,8 +388,9 @@ class _Odd(TypedDict):
 
 def _what_is_odd(tried: Tried, run: RunResult, reader: Reader) -> _Odd:
     """Return what the person may not have meant, as `Optimised` describes it."""
-    known = [*map(tried.standing, tried.columns)]
-    goals = {each.goal.value for each in known if each.n == known[0].n}
+    n = min(map(tried.length, tried.columns))
+    known = [tried.standing(each, n) for each in tried.columns]
+    goals = {each.goal.value for each in known}
     asked = [(run.model.forecasts[number].name, text) for number, text in reader.columns if text is not None]
     return {
         "numberless": sum(math.isnan(each.goal.value) and not each.excess for each in known),

@@ -11,6 +11,7 @@ import pytest
 from xlmc.analysis.results.statements import certainties, statements
 from xlmc.api import Simulation, sensitivities
 from xlmc.errors import SimulationError
+from xlmc.montecarlo.diagnostics.weighing import Weighting
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.statistics import Sample
 from xlmc.outputs.filter_effect import filter_effect_of
@@ -162,3 +163,23 @@ def test_sensitivities_of_weighted_trials_are_refused_in_python(model):
     run = simulate(model(), trials=2_000, evidence="weights")
     with pytest.raises(SimulationError, match=r'Evidence weights the trials of this run.*evidence="rejection"'):
         sensitivities(Simulation(run))
+
+
+@pytest.mark.parametrize(
+    ("weights", "most", "effective", "rows"),
+    [
+        ([1.0, 1.0, 1.0, 1.0], 4, 4.0, [0, 1, 2, 3]),
+        ([1.0, 0.0, 1.0, 0.0], 4, 2.0, [0, 2]),
+        ([1.0, 0.5, 0.5, 0.0], 4, 8 / 3, [0, 1]),  # at a quarter and three quarters of 2
+        ([0.1, 0.1, 1.0], 3, 1.44 / 1.02, [2]),  # one of equal weight, in the middle of 1.2
+        ([1.0, 1.0, 1.0, 1.0], 2, 4.0, [0, 1]),
+        ([0.5] * 6, 6, 6.0, [0, 1, 2, 3, 4, 5]),
+        ([0.0, 0.0, 1.0], 2, 1.0, []),
+        ([], 5, 0.0, []),
+    ],
+)
+def test_rows_of_equal_weight(weights, most, effective, rows):
+    """As many as (Σw)²/Σw², at equal steps of the weights added up."""
+    found = Weighting(np.array(weights), 0.5, 1.0)
+    assert found.effective == pytest.approx(effective)
+    assert found.even_rows(most).tolist() == rows

@@ -306,12 +306,15 @@ FILES = {
         "ModuleNotFoundError: No module named 'nothing_such' (line 1)",
     ),
     "no function": ("x = 3\n", "The file defines no function"),
-    "a function of Excel": ("def Sum(a): return a\n", "Sum is a function of Excel, which xlmc computes itself"),
-    "another function of Excel": ("def Norm_Dist(a): return a\n", "Norm_Dist is a function of Excel"),
-    "one name twice": ("def Ab(a): return a\ndef AB(a): return a\n", "Ab and AB are one name to Excel"),
+    "a function of Excel": ("def Sum(a): return a\n", "The function Sum has the name of one of Excel"),
+    "another function of Excel": (
+        "def Norm_Dist(a): return a\n",
+        "The function Norm_Dist has the name of one of Excel",
+    ),
+    "one name twice": ("def Ab(a): return a\ndef AB(a): return a\n", "The functions Ab and AB have one name in Excel"),
     "a list of what is none": ("__all__ = ['x']\nx = 3\n", "__all__ lists 'x', which is no function"),
     "another name": ("def BeamMomant(a, b): return a\n", "bad.py does not define it. Did you mean BeamMomant?"),
-    "too few arguments": ("def BeamMoment(a): return a\n", "BeamMoment is given 2 arguments, and takes 1"),
+    "too few arguments": ("def BeamMoment(a): return a\n", "he function BeamMoment is given 2 arguments, and takes 1"),
 }
 
 

@@ -92,7 +92,9 @@ class OwnFunctions:
         body, (fewest, most) = _body_of(row), row.arity()
         if not fewest <= arguments <= most:
             takes = f"{fewest}" if fewest == most else f"{fewest} or more" if most == 255 else f"{fewest} to {most}"
-            message = f"{body.name} is given {arguments} argument{'s' * (arguments != 1)}, and takes {takes}"
+            message = (
+                f"the function {body.name} is given {arguments} argument{'s' * (arguments != 1)}, and takes {takes}"
+            )
             raise FormulaError(message, hint=f"correct the formula, or the function in {body.file}")
         return row
 
@@ -152,9 +154,10 @@ def _refuse_name(name: str, key: str, rows: Mapping[str, Function], path: Path) 
 
     if function_named(key) is not None or function_named(key.replace("_", ".")) is not None:
         hint = "Give it another name; helpers of the file begin with _, such as _average"
-        raise WorkbookError(f"{name} is a function of Excel, which xlmc computes itself", where=path, hint=hint)
+        message = f"the function {name} has the name of one of Excel, which xlmc computes itself"
+        raise WorkbookError(message, where=path, hint=hint)
     if key in rows:
-        message = f"{_body_of(rows[key]).name} and {name} are one name to Excel, which ignores case"
+        message = f"the functions {_body_of(rows[key]).name} and {name} have one name in Excel, which ignores case"
         raise WorkbookError(message, where=path, hint="Rename one of them")
 
 

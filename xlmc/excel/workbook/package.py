@@ -31,6 +31,7 @@ __all__ = [
     "Limits",
     "Relationship",
     "content_type",
+    "folded_names",
     "hash_parts",
     "read_parts",
     "relationships",
@@ -111,24 +112,31 @@ def unpacked(data: bytes, limits: Limits = LIMITS) -> dict[str, bytes]:
         raise WorkbookError(f"the file is damaged ({reason})", hint="Fetch or copy it again") from error
 
 
-def relationships(parts: Mapping[str, bytes], part: str = "") -> dict[str, Relationship]:
+def relationships(
+    parts: Mapping[str, bytes], part: str = "", names: Mapping[str, str] | None = None
+) -> dict[str, Relationship]:
     """Return the relationships of one part by their id; those of the package itself for `""`. None if it has no rels
     part.
 
     Targets are names as in `parts`, also where the file writes them in another case; a target that does not exist
     is given as the file means it.
 
+    Args:
+        parts: of the package.
+        part: whose relationships.
+        names: `folded_names(parts)`, for callers that ask for many parts.
+
     Raises:
         WorkbookError: the rels part is not XML.
     """
-    rels = stored_part(parts, rels_part(part))
+    rels = stored_part(parts, rels_part(part), names)
     if rels is None:
         return {}
     folder = posixpath.join("/", posixpath.dirname(part))
     pointers = dict(_pointers(parts[rels], rels, folder))
     if all(meant.external or meant.target in parts for meant in pointers.values()):
         return pointers
-    stored = {name.casefold(): name for name in parts}
+    stored = folded_names(parts) if names is None else names
     return {pointer: _in_package(stored, meant) for pointer, meant in pointers.items()}
 
 
@@ -153,11 +161,18 @@ def rels_part(part: str) -> str:
     return posixpath.join(folder, "_rels", f"{name}.rels")
 
 
-def stored_part(parts: Mapping[str, bytes], name: str) -> str | None:
-    """Return the name of a part as the package writes it: part names match whatever their case."""
+def folded_names(parts: Mapping[str, bytes]) -> dict[str, str]:
+    """Return the names of all parts by their folded names: part names match whatever their case."""
+    return {name.casefold(): name for name in parts}
+
+
+def stored_part(parts: Mapping[str, bytes], name: str, names: Mapping[str, str] | None = None) -> str | None:
+    """Return the name of a part as the package writes it; see `relationships`."""
     if name in parts:
         return name
     folded = name.casefold()
+    if names is not None:
+        return names.get(folded)
     return next((stored for stored in parts if stored.casefold() == folded), None)
 
 

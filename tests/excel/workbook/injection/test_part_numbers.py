@@ -7,6 +7,7 @@ from xlmc.excel.workbook.injection.part_numbers import (
     free_names,
     free_table_name,
     quoted,
+    reached,
     rename_in_formula,
 )
 
@@ -71,3 +72,28 @@ def test_names_that_pointers_speak_of_are_claimed_whatever_the_case_of_their_par
     rels = b'<Relationships xmlns="x">' + pointer + b"</Relationships>"
     parts = {"[Content_Types].xml": b"<Types/>", "xl/drawings/a.xml": b"<a/>", "xl/drawings/_RELS/A.xml.rels": rels}
     assert claimed_names(parts) == {*parts, "xl/media/image7.png"}
+
+
+class _Counted(dict):
+    """Parts that count how often somebody goes through all their names."""
+
+    passes = 0
+
+    def __iter__(self):
+        self.passes += 1
+        return super().__iter__()
+
+
+@pytest.mark.parametrize("search", [claimed_names, lambda parts: reached(parts, "xl/drawings/drawing1.xml")])
+def test_the_names_of_the_parts_are_gone_through_a_few_times_however_many_charts_there_are(search):
+    kind = "http://schemas.openxmlformats.org/officeDocument/2006/relationships/chart"
+    pointers = "".join(
+        f'<Relationship Id="rId{k}" Type="{kind}" Target="../charts/Chart{k}.xml"/>' for k in range(1, 401)
+    )
+    rels = f'<Relationships xmlns="http://schemas.openxmlformats.org/package/2006/relationships">{pointers}</Relationships>'
+    parts = _Counted({f"xl/charts/chart{k}.xml": b"<c/>" for k in range(1, 401)})
+    types = b'<Types xmlns="http://schemas.openxmlformats.org/package/2006/content-types"/>'
+    parts |= {"[Content_Types].xml": types, "xl/drawings/drawing1.xml": b"<d/>"}
+    parts["xl/drawings/_rels/drawing1.xml.rels"] = rels.encode()
+    assert {f"xl/charts/chart{k}.xml" for k in range(1, 401)} <= {*search(parts)}
+    assert parts.passes < 12

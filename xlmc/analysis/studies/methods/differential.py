@@ -105,9 +105,14 @@ class SecondOrder:
 
 
 def _polynomial(found: Derivative, away: Floats) -> Floats:
-    """Return the quadratic polynomial at points `(n, k)` counted from the means, `(n,)`."""
-    bent = 0.5 * np.einsum("nk,nk->n", away @ _bend(found), away)
-    return np.asarray(float(found.value[0]) + away @ found.gradient[0] + bent)
+    """Return the quadratic polynomial at points `(n, k)` counted from the means, `(n,)`; most of many assumptions have
+    no part in it.
+    """
+    slope, bend = found.gradient[0], _bend(found)
+    reaching = np.flatnonzero((slope != 0.0) | (bend != 0.0).any(axis=0))
+    near = np.ascontiguousarray(away[:, reaching])
+    bent = 0.5 * np.einsum("nk,nk->n", near @ bend[np.ix_(reaching, reaching)], near)
+    return np.asarray(float(found.value[0]) + near @ slope[reaching] + bent)
 
 
 def _bend(found: Derivative) -> Floats:

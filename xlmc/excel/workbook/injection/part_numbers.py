@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
 
-from xlmc.excel.workbook.package import CONTENT_TYPES, relationships, rels_part
+from xlmc.excel.workbook.package import CONTENT_TYPES, folded_names, relationships, rels_part
 from xlmc.excel.workbook.safe_xml import tree
 
 __all__ = [
@@ -94,22 +94,22 @@ def reached(parts: Mapping[str, bytes], *starts: str) -> list[str]:
     Raises:
         WorkbookError: a rels part is not XML.
     """
-    found = dict.fromkeys(starts)
+    found, names = dict.fromkeys(starts), folded_names(parts)
     queue = list(starts)
     for part in queue:
-        new = [target for target in _pointed_to(parts, part) if target not in found]
+        new = [target for target in _pointed_to(parts, part, names) if target not in found]
         found |= dict.fromkeys(new)
         queue += new
     return [part for part in found if part]
 
 
-def _pointed_to(parts: Mapping[str, bytes], part: str) -> list[str]:
-    """Return the parts in this package that one part points to, each once.
+def _pointed_to(parts: Mapping[str, bytes], part: str, names: Mapping[str, str] | None = None) -> list[str]:
+    """Return the parts in this package that one part points to, each once; `names` as for `relationships`.
 
     Raises:
         WorkbookError: the rels part is not XML.
     """
-    targets = (rel.target for rel in relationships(parts, part).values() if not rel.external)
+    targets = (rel.target for rel in relationships(parts, part, names).values() if not rel.external)
     return list(dict.fromkeys(target for target in targets if target in parts))
 
 
@@ -137,7 +137,10 @@ def claimed_names(parts: Mapping[str, bytes]) -> set[str]:
     spoken = {each.get("PartName", "").removeprefix("/") for each in types}
     folded = {name.casefold() for name in parts if name.casefold().endswith(".rels")}
     sources = [part for part in ("", *parts) if rels_part(part).casefold() in folded]
-    pointed = {each.target for part in sources for each in relationships(parts, part).values() if not each.external}
+    names = folded_names(parts)
+    pointed = {
+        each.target for part in sources for each in relationships(parts, part, names).values() if not each.external
+    }
     return {*parts, *spoken, *pointed} - {""}
 
 

@@ -78,8 +78,8 @@ def compare(relation: _Relation, of_numbers: _Relation, x: Value, y: Value) -> V
 
 def _mixed(x: Value, y: Value) -> bool:
     """Return whether there are both logicals and numbers."""
-    kinds = {int(k) for v in (x, y) for k in np.unique(v.kinds)} - {BLANK}
-    return len(kinds) > 1
+    counts = [np.bincount(v.kinds.ravel()) for v in (x, y)]  # not `np.unique`, which imports masked arrays
+    return len({int(kind) for each in counts for kind in np.flatnonzero(each)} - {BLANK}) > 1
 
 
 def _ranks(x: Value, other: Value) -> Any:

@@ -12,7 +12,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.formula.ir import Expression
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
-from xlmc.montecarlo.definitions.crystal_ball.dialogs import FromDialogs, read_dialogs
+from xlmc.montecarlo.definitions.crystal_ball.from_dialogs import FromDialogs, read_dialogs
 from xlmc.montecarlo.definitions.crystal_ball.lost_data import remark_on_lost_data
 from xlmc.montecarlo.definitions.crystal_ball.precision_control import with_precision
 from xlmc.montecarlo.definitions.crystal_ball.refused import refused_forecasts, refused_rows

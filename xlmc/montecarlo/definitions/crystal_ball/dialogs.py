@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Final, TypeVar
 
 from xlmc.errors import DefinitionError, FormulaError
@@ -16,9 +16,10 @@ from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import formula_text, ir
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
-from xlmc.montecarlo.definitions.crystal_ball.distribution_text import Distribution, UnreadableError, distribution_of
-from xlmc.montecarlo.definitions.crystal_ball.hidden_blocks import Blocks, read_blocks
-from xlmc.montecarlo.definitions.crystal_ball.object_names import ObjectNames
+from xlmc.montecarlo.definitions.crystal_ball.distribution_text import Distribution, distribution_of
+from xlmc.montecarlo.definitions.crystal_ball.from_dialogs import UNPROVEN, FromDialogs
+from xlmc.montecarlo.definitions.crystal_ball.hidden_blocks import Blocks
+from xlmc.montecarlo.definitions.crystal_ball.object_names import ObjectNames, UnreadableError
 from xlmc.montecarlo.definitions.crystal_ball.stored_objects import (
     NAME,
     OF_COEFFICIENTS,
@@ -26,7 +27,6 @@ from xlmc.montecarlo.definitions.crystal_ball.stored_objects import (
     OF_PARAMETERS,
     CellReference,
     ForecastFilter,
-    Precision,
     Stored,
     StoredAssumption,
     StoredCorrelation,
@@ -53,9 +53,8 @@ from xlmc.montecarlo.distributions.parameters import range_text, show
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.sampling.draws import Draw
 
-__all__ = ["UNPROVEN", "FromDialogs", "read_dialogs"]
+__all__ = ["Dialogs"]
 
-UNPROVEN: Final = "this was not yet met in a genuine file: compare once in Crystal Ball"
 _INFERRED: Final = "What their numbers mean was inferred from one file: compare once in Crystal Ball"
 _CURE: Final = "Define the cell in the table xlmc_assumptions, or look it up in Crystal Ball"
 _NORMAL: Final = {2: "mean", 3: "std_dev"}
@@ -65,62 +64,9 @@ _T = TypeVar("_T", StoredAssumption, StoredForecast, StoredDecision)
 _Key = tuple[str, str]
 
 
-@dataclass(slots=True)
-class FromDialogs:
-    """What the dialogs define.
+class Dialogs:
+    """Reads them; the arguments are those of `read_dialogs`."""
 
-    Attributes:
-        assumptions, forecasts: by sheet, row and column.
-        rewritten: cells of their own for parameters that are formulas, and cells that cannot be read, each with why.
-        precisions: what is asked of the precision of forecasts, by name.
-        damages: blocks and objects that cannot be read, in words.
-        stored: whether the workbook holds blocks of Crystal Ball at all.
-    """
-
-    assumptions: list[Assumption] = field(default_factory=list)
-    forecasts: list[Forecast] = field(default_factory=list)
-    filters: list[Filter] = field(default_factory=list)
-    correlations: list[Correlation] = field(default_factory=list)
-    decisions: list[Decision] = field(default_factory=list)
-    rewritten: dict[Cell, ir.Expression | FormulaError] = field(default_factory=dict)
-    precisions: dict[str, Precision] = field(default_factory=dict)
-    damages: list[str] = field(default_factory=list)
-    stored: bool = False
-
-    @property
-    def refused(self) -> dict[Cell, FormulaError]:
-        """The cells that cannot be read, each with why."""
-        return {cell: why for cell, why in self.rewritten.items() if isinstance(why, FormulaError)}
-
-    def __bool__(self) -> bool:
-        return bool(self.assumptions or self.forecasts or self.rewritten or self.damages)
-
-
-def read_dialogs(
-    workbook: Workbook,
-    computed: Computed,
-    central: float,
-    assumptions: Claims,
-    forecasts: Claims,
-    findings: Findings,
-) -> FromDialogs:
-    """Return what Crystal Ball's dialogs define in a workbook.
-
-    Args:
-        workbook: that may hold Crystal Ball's data.
-        computed: which cells something gives a value.
-        central: the share of the central range.
-        assumptions: take names and cells; the rows of tables have taken theirs.
-        forecasts: likewise.
-        findings: takes mistakes and remarks.
-    """
-    blocks = read_blocks(workbook)
-    if not (blocks.found or blocks.damages):
-        return FromDialogs()
-    return _Dialogs(workbook, computed, central, assumptions, forecasts, findings).read(blocks)
-
-
-class _Dialogs:
     def __init__(
         self,
         workbook: Workbook,

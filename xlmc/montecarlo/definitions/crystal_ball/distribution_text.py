@@ -14,10 +14,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Final
 
+from xlmc.montecarlo.definitions.crystal_ball.object_names import UnreadableError
 from xlmc.montecarlo.definitions.crystal_ball.stored_objects import StoredAssumption
 from xlmc.montecarlo.distributions.spelling import plain
 
-__all__ = ["Distribution", "UnreadableError", "distribution_of"]
+__all__ = ["Distribution", "distribution_of"]
 
 _NUMBER: Final = re.compile(r"-?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?")
 
@@ -27,10 +28,6 @@ _CUTOFFS: Final = {"LoCut": (_LOWER, 1, -1.11e307), "HiCut": (_UPPER, 2, 1.11e30
 
 _FIRST_OF_FAMILY: Final = 3
 """Slots below hold the cutoffs and a number without a meaning for a run."""
-
-
-class UnreadableError(ValueError):
-    """The text and the numbers do not say for certain what is drawn."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -59,8 +59,6 @@ def read_blocks(workbook: Workbook) -> Blocks:
     """Every block of a workbook, sheet by sheet."""
     blocks = Blocks()
     parts = workbook.parts or workbook.origin
-    if not any(b"CB_" in content or b"\0" in content[:4] for name, content in parts.items() if _is_vml(name)):
-        return blocks
     for script in hidden_scripts(parts, read_structure(parts)):
         if isinstance(script, DamagedDrawing):
             blocks.damages.append(Damage(script.sheet, "in its drawing", script.reason))
@@ -69,10 +67,6 @@ def read_blocks(workbook: Workbook) -> Blocks:
             if script.shape != _PREFERENCES:
                 _read_block(script.sheet, script.shape, script.text, blocks)
     return blocks
-
-
-def _is_vml(part: str) -> bool:
-    return part.lower().endswith(".vml")
 
 
 def _read_block(sheet: str, shape: str, text: str, blocks: Blocks) -> None:

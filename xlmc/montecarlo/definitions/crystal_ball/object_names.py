@@ -16,15 +16,18 @@ from xlmc.excel.formula import Resolver, ir
 from xlmc.excel.formula.parse import parse
 from xlmc.excel.formula.precedents import references
 from xlmc.excel.workbook.workbook import DefinedName, Workbook
-from xlmc.montecarlo.definitions.crystal_ball.distribution_text import UnreadableError
 from xlmc.montecarlo.definitions.tables.table_rows import as_text
 
-__all__ = ["ObjectNames"]
+__all__ = ["ObjectNames", "UnreadableError"]
 
 _OF_OBJECT: Final = re.compile(r"CB_([0-9a-f]{32})", re.IGNORECASE)
 _OF_REFERENCE: Final = re.compile(r"CBCR_[0-9a-f]{32}", re.IGNORECASE)
 _OF_SHEET: Final = "CBx_Sheet_Guid"
 _NO_CELL: Final = ("#REF!", "#N/A")
+
+
+class UnreadableError(ValueError):
+    """The text, the numbers and the names do not say for certain what is drawn."""
 
 
 class ObjectNames:

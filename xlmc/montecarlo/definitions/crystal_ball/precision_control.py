@@ -11,15 +11,18 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from xlmc.errors import SimulationError
-from xlmc.montecarlo.definitions.crystal_ball.dialogs import UNPROVEN
-from xlmc.montecarlo.definitions.crystal_ball.stored_objects import Precision
+from xlmc.montecarlo.definitions.crystal_ball.from_dialogs import UNPROVEN
 from xlmc.montecarlo.definitions.definitions import Forecast, Settings
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.stopping import LIMIT
 from xlmc.montecarlo.definitions.stopping import Precision as Goal
 from xlmc.montecarlo.statistics.number_text import count_text, number_text
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.crystal_ball.stored_objects import Precision
 
 __all__ = ["with_precision"]
 

@@ -128,8 +128,8 @@ CALLS = [
     "RiskExtvalueMin",
 ]
 TESTS = (
-    "tests/test_functions_in_cells.py",
-    "tests/test_risk_books.py",
+    "tests/montecarlo/definitions/in_cells/test_functions_in_cells.py",
+    "tests/montecarlo/definitions/in_cells/test_risk_books.py",
     "tests/montecarlo/definitions/in_cells/test_calls.py",
     "tests/montecarlo/definitions/in_cells/test_joined_draws.py",
     "tests/montecarlo/diagnostics/test_result_cells.py",

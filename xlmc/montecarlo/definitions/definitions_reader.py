@@ -12,7 +12,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.formula.ir import Expression
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
-from xlmc.montecarlo.definitions.crystal_ball.from_dialogs import FromDialogs, read_dialogs
+from xlmc.montecarlo.definitions.crystal_ball.from_dialogs import FromDialogs, may_hold_blocks
 from xlmc.montecarlo.definitions.crystal_ball.lost_data import remark_on_lost_data
 from xlmc.montecarlo.definitions.crystal_ball.precision_control import with_precision
 from xlmc.montecarlo.definitions.crystal_ball.refused import refused_forecasts, refused_rows
@@ -105,8 +105,12 @@ def read_definitions(
     if tables[CONVERTED]:
         refused_cells = refused_rows(workbook, tables[CONVERTED], uncertain.cells, findings)
         dialogs = FromDialogs(rewritten={**refused_cells}, stored=True)
-    else:
+    elif may_hold_blocks(workbook):
+        from xlmc.montecarlo.definitions.crystal_ball.dialogs import read_dialogs  # few workbooks have them
+
         dialogs = read_dialogs(workbook, computed, central, uncertain, answers, findings)
+    else:
+        dialogs = FromDialogs()
     of_xlrisk = Findings()
     xlrisk = read_xlrisk(workbook, of_xlrisk)
     lognorm = settings.lognorm or ("@RISK" if xlrisk is None else "XLRisk")

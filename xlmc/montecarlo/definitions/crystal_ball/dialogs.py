@@ -18,7 +18,7 @@ from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.crystal_ball.distribution_text import Distribution, distribution_of
 from xlmc.montecarlo.definitions.crystal_ball.from_dialogs import UNPROVEN, FromDialogs
-from xlmc.montecarlo.definitions.crystal_ball.hidden_blocks import Blocks
+from xlmc.montecarlo.definitions.crystal_ball.hidden_blocks import Blocks, read_blocks
 from xlmc.montecarlo.definitions.crystal_ball.object_names import ObjectNames, UnreadableError
 from xlmc.montecarlo.definitions.crystal_ball.stored_objects import (
     NAME,
@@ -53,7 +53,7 @@ from xlmc.montecarlo.distributions.parameters import range_text, show
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.sampling.draws import Draw
 
-__all__ = ["Dialogs"]
+__all__ = ["read_dialogs"]
 
 _INFERRED: Final = "What their numbers mean was inferred from one file: compare once in Crystal Ball"
 _CURE: Final = "Define the cell in the table xlmc_assumptions, or look it up in Crystal Ball"
@@ -64,9 +64,31 @@ _T = TypeVar("_T", StoredAssumption, StoredForecast, StoredDecision)
 _Key = tuple[str, str]
 
 
-class Dialogs:
-    """Reads them; the arguments are those of `read_dialogs`."""
+def read_dialogs(
+    workbook: Workbook,
+    computed: Computed,
+    central: float,
+    assumptions: Claims,
+    forecasts: Claims,
+    findings: Findings,
+) -> FromDialogs:
+    """Return what Crystal Ball's dialogs define in a workbook.
 
+    Args:
+        workbook: that may hold Crystal Ball's data.
+        computed: which cells something gives a value.
+        central: the share of the central range.
+        assumptions: take names and cells; the rows of tables have taken theirs.
+        forecasts: likewise.
+        findings: takes mistakes and remarks.
+    """
+    blocks = read_blocks(workbook)
+    if not (blocks.found or blocks.damages):
+        return FromDialogs()
+    return _Dialogs(workbook, computed, central, assumptions, forecasts, findings).read(blocks)
+
+
+class _Dialogs:
     def __init__(
         self,
         workbook: Workbook,

@@ -1,4 +1,4 @@
-"""What Crystal Ball's dialogs define: looked for in each workbook, and read where there is something to read."""
+"""What Crystal Ball's dialogs define, and whether a workbook may hold any: most do not."""
 
 from __future__ import annotations
 
@@ -9,15 +9,12 @@ from xlmc.errors import FormulaError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.workbook.workbook import Workbook
-from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import Assumption, Correlation, Decision, Filter, Forecast
-from xlmc.montecarlo.definitions.problems import Findings
-from xlmc.montecarlo.definitions.tables.identity import Claims
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.crystal_ball.stored_objects import Precision
 
-__all__ = ["UNPROVEN", "FromDialogs", "may_hold_blocks", "read_dialogs"]
+__all__ = ["UNPROVEN", "FromDialogs", "may_hold_blocks"]
 
 UNPROVEN: Final = "this was not yet met in a genuine file: compare once in Crystal Ball"
 
@@ -51,35 +48,6 @@ class FromDialogs:
 
     def __bool__(self) -> bool:
         return bool(self.assumptions or self.forecasts or self.rewritten or self.damages)
-
-
-def read_dialogs(
-    workbook: Workbook,
-    computed: Computed,
-    central: float,
-    assumptions: Claims,
-    forecasts: Claims,
-    findings: Findings,
-) -> FromDialogs:
-    """Return what Crystal Ball's dialogs define in a workbook.
-
-    Args:
-        workbook: that may hold Crystal Ball's data.
-        computed: which cells something gives a value.
-        central: the share of the central range.
-        assumptions: take names and cells; the rows of tables have taken theirs.
-        forecasts: likewise.
-        findings: takes mistakes and remarks.
-    """
-    if not may_hold_blocks(workbook):
-        return FromDialogs()
-    from xlmc.montecarlo.definitions.crystal_ball.dialogs import Dialogs  # few workbooks have them
-    from xlmc.montecarlo.definitions.crystal_ball.hidden_blocks import read_blocks
-
-    blocks = read_blocks(workbook)
-    if not (blocks.found or blocks.damages):
-        return FromDialogs()
-    return Dialogs(workbook, computed, central, assumptions, forecasts, findings).read(blocks)
 
 
 def may_hold_blocks(workbook: Workbook) -> bool:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from xlmc.cli.options import FilePath, functions_option
+from xlmc.cli.options import FilePath, functions_option, number_style_option
 from xlmc.cli.terminal import paragraph, plain, put, say, say_json
 from xlmc.errors import capitalised
 
@@ -53,6 +53,7 @@ _MOST_TOLD: Final = 12
 @click.option("--json", "as_json", is_flag=True, help="Print the cells as JSON.")
 @click.option("--csv", "as_csv", is_flag=True, help="Print the cells as CSV.")
 @click.option("--overwrite", is_flag=True, help="Replace existing files, whoever wrote them.")
+@number_style_option
 @functions_option
 def calculate(
     book: Path,

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath, functions_option
+from xlmc.cli.options import FilePath, functions_option, number_style_option
 from xlmc.cli.terminal import paragraph, say
 from xlmc.errors import capitalised, sentence
 
@@ -32,6 +32,7 @@ _MOST_CELLS = 12
 
 @click.command()
 @click.argument("book", type=FilePath())
+@number_style_option
 @functions_option
 def check(
     book: Path,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath, functions_option
+from xlmc.cli.options import FilePath, functions_option, number_style_option
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
@@ -25,6 +25,7 @@ __all__ = ["convert"]
     help="The new workbook.  [default: BOOK-converted.xlsx]",
 )
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
+@number_style_option
 @functions_option
 def convert(
     book: Path,

@@ -22,6 +22,7 @@ __all__ = [
     "feed_option",
     "functions_option",
     "jobs_option",
+    "number_style_option",
     "quiet_option",
     "run_options",
     "seed_option",
@@ -144,6 +145,25 @@ functions_option = click.option(
 """The option for a person's own functions."""
 
 
+def _use_style(context: click.Context, _option: click.Parameter, style: str | None) -> str | None:
+    """Write all numbers in the style that was typed until the command ends."""
+    from xlmc.montecarlo.definitions.number_styles import style_asked
+
+    if style is not None:
+        context.with_resource(style_asked(style))
+    return style
+
+
+def number_style_option(command: F) -> F:
+    """Add the option for the style of numbers to a command that does not run with settings."""
+    (name,), words, setting = SETTINGS["number_style"].options, SETTINGS["number_style"].kind, SETTINGS["number_style"]
+    assert isinstance(words, Word)
+    option = click.option(
+        name, type=OneOf(*words.words()), help=setting.help, callback=_use_style, is_eager=True, expose_value=False
+    )
+    return option(command)
+
+
 def _setting_option(setting: Setting) -> Callable[[F], F]:
     """Make the option of a setting."""
     names = (*setting.options, setting.key) if setting.recorded_as else setting.options
@@ -151,7 +171,10 @@ def _setting_option(setting: Setting) -> Callable[[F], F]:
         case Whole(least=least):
             return click.option(*names, type=WholeNumber(least), help=setting.help)
         case Word() as kind:
-            return click.option(*names, type=OneOf(*kind.words()), help=setting.help)
+            # notices are written while the workbook is read, before the command itself knows the style
+            used = _use_style if setting.key == "number_style" else None
+            words = OneOf(*kind.words())
+            return click.option(*names, type=words, help=setting.help, callback=used, is_eager=used is not None)
         case Switch():
             return click.option(*names, is_flag=True, help=setting.help)
         case Names():

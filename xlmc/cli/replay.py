@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.check import failing_lines
-from xlmc.cli.options import FilePath, functions_option, jobs_option
+from xlmc.cli.options import FilePath, functions_option, jobs_option, number_style_option
 from xlmc.cli.terminal import say, say_json
 
 if TYPE_CHECKING:
@@ -38,6 +38,7 @@ _LONGEST = 60
 @jobs_option
 @click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON.")
 @click.option("--quiet", is_flag=True, help="Print no progress bar.")
+@number_style_option
 @functions_option
 def replay(
     recorded: Path,

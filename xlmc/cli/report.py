@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath, detailed_option, functions_option
+from xlmc.cli.options import FilePath, detailed_option, functions_option, number_style_option
 from xlmc.cli.output_options import Outputs, ReportContents, output_options, results_beside
 from xlmc.cli.terminal import say
 from xlmc.cli.writing import NOT_WRITTEN
@@ -29,6 +29,7 @@ NOT_TO_BE_USED = 1
 @output_options("RUN-results.xlsx", without=["save_run"])
 @detailed_option
 @click.option("--quiet", is_flag=True, help="Print no notes.")
+@number_style_option
 @functions_option
 def report(
     run: Path,

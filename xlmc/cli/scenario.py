@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath, functions_option
+from xlmc.cli.options import FilePath, functions_option, number_style_option
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
@@ -26,6 +26,7 @@ _MOST_TOLD = 8
 @click.option("-o", "--output", type=FilePath(), help="Write a copy of BOOK with NAME typed in.")
 @click.option("--in-place", is_flag=True, help="Type it into BOOK itself.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
+@number_style_option
 @functions_option
 def scenario(
     book: Path,

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import click
 
 from xlmc.cli.blocks import show
+from xlmc.cli.options import number_style_option
 from xlmc.cli.output_options import with_files, with_options
 from xlmc.cli.terminal import INTERRUPTED, say, say_json
 from xlmc.cli.writing import Written, write_files
@@ -52,7 +53,7 @@ def study_options(kinds: str) -> Callable[[Command], Command]:
     )
 
     def add(command: Command) -> Command:
-        return with_files(text, ("html", "pdf", "docx"))(with_options(*others)(command))
+        return with_files(text, ("html", "pdf", "docx"))(with_options(*others, number_style_option)(command))
 
     return add
 

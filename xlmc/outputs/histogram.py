@@ -185,7 +185,7 @@ def bars_of(row: SummaryRow, sample: Sample) -> Histogram | None:
     if row.categories:
         told = [*frequent_texts(row.categories)[0]]
         return _named_bars(sample, row.numbers[: len(told)], told, row.form)
-    if row.yes is not None and sample.yes_no:
+    if row.yes is not None and sample.yes_no_at_most:
         return _named_bars(sample, [0.0, 1.0], ["no", "yes"], row.form)
     low, high = row.low.value, row.high.value
     if math.isnan(low) or math.isnan(high):

@@ -35,7 +35,7 @@ from xlmc.excel.workbook.seal import sealed_json
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.definitions.forms import Form
-from xlmc.montecarlo.definitions.number_styles import USUAL_STYLE, in_style
+from xlmc.montecarlo.definitions.number_styles import as_programs_read
 from xlmc.montecarlo.statistics import Estimate, proportion
 from xlmc.montecarlo.statistics.estimate import finite
 from xlmc.outputs.filter_effect import Marginal, filter_effect_of
@@ -99,7 +99,7 @@ Json = dict[str, Any]
 _EstimateJson = dict[str, float | str | None]
 
 
-@in_style(USUAL_STYLE)
+@as_programs_read()
 def document(simulation: RunResult, *, command: str | None = None) -> Json:
     """Return the results of a run, every number as it is in Python and on the sheets.
 

@@ -13,7 +13,7 @@ from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.seal import sealed_json, sealed_parts, sealed_text
 from xlmc.excel.workbook.target import Target, refuse_other_ending, refuse_same_file
 from xlmc.excel.workbook.writer import package_bytes, write_workbook
-from xlmc.montecarlo.definitions.number_styles import USUAL_STYLE, in_style
+from xlmc.montecarlo.definitions.number_styles import as_programs_read
 from xlmc.montecarlo.statistics.estimate import finite_json
 from xlmc.outputs.document.parts import Block, Document, Paragraph
 from xlmc.outputs.sheets.page import Page
@@ -61,7 +61,7 @@ class StudyReport:
 
     def json(self) -> dict[str, object]:
         """Return all that was found for programs, whose texts have the usual signs of thousands and decimals."""
-        with in_style(USUAL_STYLE):
+        with as_programs_read():
             return self.as_json()
 
 

@@ -38,7 +38,7 @@ from xlmc.analysis.studies.comparison.tolerances import (
     judge,
     read_tolerances,
 )
-from xlmc.analysis.studies.comparison.variations import names_of, with_changes, with_plain_sampling
+from xlmc.analysis.studies.comparison.variations import names_of_rows, with_changes, with_plain_sampling
 from xlmc.analysis.studies.shown import Shown
 from xlmc.analysis.studies.steps import Steps, Tell
 from xlmc.errors import SimulationError
@@ -242,8 +242,8 @@ def screen(
         message = f"the tolerance of the acceptance is {number_text(acceptance_tolerance)}"
         raise SimulationError(message, hint="give a positive number, such as 0.1 for a tenth")
     stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, model.forecasts)
-    wanted = [names_of(pattern, [a.name for a in model.live], "assumption that is drawn") for pattern in sets]
-    asked = [name for text in judged_by for name in names_of(text, [f.name for f in model.forecasts], "forecast")]
+    wanted = [names_of_rows(pattern, model.live, "assumption that is drawn") for pattern in sets]
+    asked = [name for text in judged_by for name in names_of_rows(text, model.forecasts, "forecast")]
     with Steps(tell) as steps:
         steps.begin("the book as it is")
         run = simulate(with_plain_sampling(model), trials=trials, seed=seed, engine=engine, jobs=jobs)

@@ -25,7 +25,7 @@ from typing import Final, TypedDict
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.analysis.studies.comparison.variations import names_of, with_plain_sampling
+from xlmc.analysis.studies.comparison.variations import names_of_rows, with_plain_sampling
 from xlmc.analysis.studies.shown import Shown
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
@@ -243,7 +243,7 @@ def uncertainty(
         DefinitionError: no assumption is uncertain, or an uncertain one depends on one that varies.
     """
     _check(outer, inner, confidence, percents)
-    wanted = {name for text in judged for name in names_of(text, [f.name for f in model.forecasts], "forecast")}
+    wanted = {name for text in judged for name in names_of_rows(text, model.forecasts, "forecast")}
     names = _uncertain_names(model, uncertain)
     _refuse_dependent(model, names)
     plan = SamplingPlan.nested(names, outer, inner)
@@ -309,7 +309,7 @@ def _uncertain_names(model: CompiledModel, asked: Iterable[str]) -> tuple[str, .
         SimulationError: no assumption that is drawn has an asked name.
     """
     live = [a.name for a in model.live]
-    found = {name for text in asked for name in names_of(text, live, "assumption that is drawn")}
+    found = {name for text in asked for name in names_of_rows(text, model.live, "assumption that is drawn")}
     found = found or {a.name for a in model.live if a.uncertain}
     if not found:
         message = f"no assumption that a forecast or filter needs is Uncertain under {UNCERTAINTY}"

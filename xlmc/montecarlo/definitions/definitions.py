@@ -113,6 +113,8 @@ class Assumption:
             one was not known then. A run checks all numbers that are not these, whoever gives them.
         stated: key of a parameter or cutoff that a formula computes -> its value at the base case, and the formula.
         uncertain: it varies from lack of knowledge: it has one value, which nobody knows. Others vary by scatter.
+        stream: the name that its random numbers are drawn by, where that is another: of a draw in a cell the call,
+            `Sheet!B7#1`, so that its label may change. People may call the assumption by it, too.
     """
 
     name: str
@@ -131,6 +133,12 @@ class Assumption:
     checked: Draw | None = field(default=None, compare=False, repr=False)
     stated: Mapping[str, StatedNumber] = field(default_factory=dict, compare=False, repr=False)
     uncertain: bool = False
+    stream: str = ""
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What people may call it: its name, and that of its stream."""
+        return (self.name, self.stream) if self.stream else (self.name,)
 
     @property
     def family(self) -> Family:
@@ -194,6 +202,11 @@ class Forecast:
     report_to: float | None = None
     kind: Kind | None = None
     role: Role = Role.ANSWER
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What people may call it: its name, and its cell."""
+        return self.name, str(self.cell)
 
     @property
     def says_how(self) -> bool:

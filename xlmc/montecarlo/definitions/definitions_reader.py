@@ -28,6 +28,7 @@ from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.in_cells.calls import InCells, in_cell_forecasts, read_in_cells
 from xlmc.montecarlo.definitions.in_cells.joined_draws import in_cell_copulas, in_cell_correlations
 from xlmc.montecarlo.definitions.in_cells.stand_ins import simtable_scenarios
+from xlmc.montecarlo.definitions.number_styles import in_style
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.assumptions import read_assumptions
 from xlmc.montecarlo.definitions.tables.correlations import read_correlations
@@ -88,10 +89,25 @@ def read_definitions(
             names.
         python: the cells that a function of Python computes, each with the call; None for none.
     """
-    findings, python = Findings(), python or {}
+    findings = Findings()
     tables = definition_tables(workbook, findings)
+    settings = read_settings(workbook, tables["xlmc_settings"], engines, findings)
+    with in_style(settings[0].number_style):
+        return _definitions(workbook, tables, settings, findings, tabulated, switched, python or {})
+
+
+def _definitions(
+    workbook: Workbook,
+    tables: Mapping[str, list[DefinitionTable]],
+    found_settings: tuple[Settings, float, Collection[str]],
+    findings: Findings,
+    tabulated: int,
+    switched: Mapping[str, bool],
+    python: Mapping[Cell, Expression],
+) -> Definitions:
+    """Return what the tables say beside the settings; see `read_definitions`."""
+    settings, central, stated = found_settings
     uncertain, answers, tests = Claims("assumption"), Claims("forecast"), Claims("filter")
-    settings, central, stated = read_settings(workbook, tables["xlmc_settings"], engines, findings)
     solves = read_solves(workbook, tables["xlmc_solve"], Computed(workbook, drawn=()), findings)
     computed = Computed(workbook, drawn=uncertain.cells, python={*python, *(each.by for each in solves)})
     assumptions = read_assumptions(workbook, tables["xlmc_assumptions"], computed, uncertain, findings)
@@ -137,7 +153,7 @@ def read_definitions(
     copulas = in_cell_copulas(workbook, calls.assumptions, calls.draws, (*correlations, *more), findings)
     if xlrisk is not None:
         forecasts = *forecasts, *xlrisk.forecasts(computed, central, answers, findings)
-    in_cells = in_cell_forecasts(calls, assumptions, computed, central, answers, findings)
+    in_cells = in_cell_forecasts(workbook, calls, assumptions, computed, central, answers, findings)
     forecasts = *forecasts, *dialogs.forecasts, *in_cells
     filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
     _remark_on_calls(calls, settings, findings)

@@ -9,7 +9,6 @@ from typing import Final, TypedDict, Unpack
 
 from xlmc.errors import DefinitionError
 from xlmc.montecarlo.distributions import family_named
-from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.sampling.draws import Draw
 
 __all__ = [
@@ -92,9 +91,9 @@ class Distribution:
             raise DefinitionError(f"{known.name}: {fault.message}", hint=fault.hint)
 
     def __repr__(self) -> str:
-        numbers = [show(value) for key, value in self.given.items() if key not in _CUTOFFS]
-        named = [f"{key}={show(self.given[key])}" for key in _CUTOFFS if key in self.given]
-        named += [] if self.base is None else [f"base={show(self.base)}"]
+        numbers = [f"{value:.12g}" for key, value in self.given.items() if key not in _CUTOFFS]
+        named = [f"{key}={self.given[key]:.12g}" for key in _CUTOFFS if key in self.given]
+        named += [] if self.base is None else [f"base={self.base:.12g}"]
         named += [f"{key}={value!r}" for key, value in (("units", self.units), ("source", self.source)) if value]
         return f"{self.family}({', '.join([*numbers, *named])})"
 

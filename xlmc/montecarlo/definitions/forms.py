@@ -20,6 +20,7 @@ from xlmc.montecarlo.statistics.number_text import (
     format_estimate,
     is_far,
     number_text,
+    signs,
     two_digit_exponent,
 )
 
@@ -30,6 +31,7 @@ __all__ = ["PLAIN", "Form", "kind_of_format", "span_text"]
 
 _QUOTED: Final = re.compile(r'"([^"]*)"|\\(.)|\[\$([^\]-]*)(?:-[^\]]*)?\]|\[[^\]]*\]|_.|\*.')
 _DIGITS: Final = re.compile(r"[#0?][#0?,.\s]*")
+_DECIMALS: Final = re.compile(r"[0#?]\.(0+)")
 _SIGNS: Final = "$€£¥₹₽₩₺₴฿₫₱₪₦"
 _CODES: Final = re.compile(
     r"\b(USD|EUR|GBP|JPY|CHF|CAD|AUD|NZD|CNY|INR|SEK|NOK|DKK|PLN|CZK|HUF|BRL|MXN|ZAR)\b|kr|zł|Kč"
@@ -122,12 +124,18 @@ class Form:
             return self._moment(value)
         scaled = self._scaled(value)
         if decimals is None:
-            text = exact_text(abs(scaled))
+            text = self._whole_coins(exact_text(abs(scaled)))
         elif is_far(scaled):
             text = number_text(abs(scaled), max(decimals + two_digit_exponent(scaled) + 1, 1))
         else:
             text = fixed_text(abs(scaled), decimals)
         return self._signed(text, scaled < 0.0)
+
+    def _whole_coins(self, text: str) -> str:
+        """Write an amount of money that has decimals with as many as its cell shows, at least: `1,234.50`."""
+        _, point, decimals = text.partition(signs()[1])
+        shown = _DECIMALS.search(self.code.partition(";")[0]) if point and self.kind is Kind.CURRENCY else None
+        return text if shown is None or "e" in text else text + "0" * (len(shown[1]) - len(decimals))
 
     def beside(self, value: float, like: Estimate) -> str:
         """Write a number without an error in the digits of another one; in six where its error is not known, either;
@@ -161,8 +169,8 @@ class Form:
             return f"{self._moment(found.value)}{error}"
         if found.error is None:
             return self.rough(found.value) if decimals is None else self.number(found.value, decimals)
-        if found.error == 0.0 and self.kind is Kind.WHOLE:
-            return exact_text(found.value)
+        if found.error == 0.0:
+            return self.number(found.value)
         scaled = self._scaled(found.value)
         text = format_estimate(abs(scaled), abs(self._scaled(found.error)), decimals)
         return self._signed(text, scaled < 0.0)

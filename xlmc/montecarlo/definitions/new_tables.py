@@ -28,6 +28,7 @@ from xlmc.montecarlo.definitions.definitions import (
 )
 from xlmc.montecarlo.definitions.stating import Role
 from xlmc.montecarlo.definitions.stopping import Precision
+from xlmc.montecarlo.definitions.tables.assumptions import STREAM
 from xlmc.montecarlo.definitions.tables.settings import LEAST_PERCENT
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.distributions.found_member import FoundMember
@@ -204,6 +205,7 @@ class _Written:
         cells: dict[str, Entry] = {"Name": each.name}
         cells |= {"Value": "" if each.base is None else each.base, "Call in": self._reference(each.cell.host)}
         cells |= {"Call": _label(each.cell), **self._distribution(each)}
+        cells |= {STREAM: each.stream} if each.stream else {}
         return NewRow(cells, "assumption", each.name, each.cell, _was(each.notes), each.cell)
 
     def forecast(self, each: Forecast) -> NewRow:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import wraps
 from operator import attrgetter
 from typing import Final, ParamSpec, TypeVar
 
-__all__ = ["STYLES", "USUAL_STYLE", "in_style", "in_style_of", "style_key"]
+__all__ = ["STYLES", "USUAL_STYLE", "as_programs_read", "in_style", "in_style_of", "style_asked", "style_key"]
 
 Given = ParamSpec("Given")
 Made = TypeVar("Made")
@@ -36,12 +37,37 @@ def style_key(typed: str) -> str:
     return " ".join(typed.replace("’", "'").split())
 
 
+_ASKED: ContextVar[str] = ContextVar("number style that a command was asked for", default="")
+
+
+@contextmanager
+def style_asked(style: str) -> Iterator[None]:
+    """Write all numbers in a style until the end of the block, whatever style workbooks ask for."""
+    token = _ASKED.set(style)
+    try:
+        with in_style(style):
+            yield
+    finally:
+        _ASKED.reset(token)
+
+
 @contextmanager
 def in_style(style: str) -> Iterator[None]:
-    """Write all numbers in a style, one of `STYLES`, until the end of the block; empty is the usual one."""
+    """Write all numbers in a style, one of `STYLES`, until the end of the block; empty is the usual one. A style that
+    the command was asked for goes before it.
+    """
     from xlmc.montecarlo.statistics.number_text import in_signs  # not for those who only ask what styles there are
 
-    with in_signs(*STYLES[style or USUAL_STYLE]):
+    with in_signs(*STYLES[_ASKED.get() or style or USUAL_STYLE]):
+        yield
+
+
+@contextmanager
+def as_programs_read() -> Iterator[None]:
+    """Write all numbers in the usual style until the end of the block, whatever was asked for."""
+    from xlmc.montecarlo.statistics.number_text import in_signs
+
+    with in_signs(*STYLES[USUAL_STYLE]):
         yield
 
 

@@ -100,7 +100,7 @@ class Answers:
             a
             for a in self.run.assumptions
             if asked.of in (a.cell, host_of(a.cell))
-            or (isinstance(asked.of, str) and name_key(asked.of) == name_key(a.name))
+            or (isinstance(asked.of, str) and name_key(asked.of) in map(name_key, a.names))
         ]
         if len(found) != 1 or number is None:
             return ir.ErrorLiteral(ErrorCode.NA)

@@ -75,7 +75,7 @@ class ByPercentiles(FoundMember):
 
     def __init__(self, family: Family, given: tuple[str, ...], percents: tuple[float, ...]) -> None:
         self.percents = percents
-        headings = [f"P{show(percent)}" for percent in percents]
+        headings = [f"P{percent:.12g}" for percent in percents]
         super().__init__(family, given, tuple(ParameterSpec(each.lower(), (each,)) for each in headings))
 
     def __reduce__(self) -> tuple[Any, ...]:

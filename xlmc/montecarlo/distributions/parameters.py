@@ -7,6 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
+from xlmc.montecarlo.statistics.number_text import number_text
+
 __all__ = [
     "HIGH",
     "LIKELIEST",
@@ -111,8 +113,8 @@ class Fault:
 
 
 def show(value: float) -> str:
-    """Write a number as a person would."""
-    return format(value, ".12g")
+    """Write a number as a person would, with all that was typed of it."""
+    return number_text(float(value), 12)
 
 
 def range_text(low: float, high: float, written: Callable[[float], str] = show) -> str:

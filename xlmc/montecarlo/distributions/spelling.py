@@ -6,8 +6,9 @@ import re
 from collections.abc import Iterable
 from difflib import get_close_matches
 from functools import lru_cache
+from typing import Protocol, TypeVar
 
-__all__ = ["did_you_mean", "name_key", "nearest", "plain"]
+__all__ = ["by_names", "did_you_mean", "name_key", "nearest", "plain"]
 
 _SEPARATORS = re.compile(r"[\s_\-]+")
 
@@ -22,6 +23,28 @@ def name_key(name: str) -> str:
     True
     """
     return name.strip().casefold()
+
+
+class _Named(Protocol):
+    @property
+    def name(self) -> str: ...
+    @property
+    def names(self) -> tuple[str, ...]: ...
+
+
+_Row = TypeVar("_Row", bound=_Named)
+
+
+def by_names(those: Iterable[_Row]) -> dict[str, _Row]:
+    """Return what each name means, by its key: a row's own name, and others that people may call it by where no row has
+    them as its own.
+    """
+    rows = tuple(those)
+    found = {name_key(each.name): each for each in rows}
+    for each in rows:
+        for name in each.names:
+            found.setdefault(name_key(name), each)
+    return found
 
 
 @lru_cache(maxsize=2048)

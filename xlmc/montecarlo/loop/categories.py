@@ -32,11 +32,11 @@ def labelled(column: Column) -> tuple[Column, tuple[str, ...]]:
 
 
 def _number_text(number: float) -> str:
-    from xlmc.montecarlo.definitions.number_styles import USUAL_STYLE, in_style
-    from xlmc.montecarlo.statistics.number_text import exact_text
+    from xlmc.montecarlo.definitions.number_styles import as_programs_read
+    from xlmc.montecarlo.statistics.number_text import number_text
 
-    with in_style(USUAL_STYLE):  # results are named by it
-        return exact_text(float(number))
+    with as_programs_read():  # results are named by it
+        return number_text(float(number), 12)
 
 
 class Labels:

@@ -120,7 +120,7 @@ class ForecastResult:
             return Kind.CATEGORY
         if self.definition.kind is not None:
             return self.definition.kind
-        if self.sample.yes_no and self._two_valued:
+        if self._two_valued:
             return Kind.YES_NO
         if (shown := kind_of_format(self._code)) is not None:
             return shown

@@ -55,7 +55,7 @@ from xlmc.montecarlo.definitions.tables.changed_cells import cells_that_change, 
 from xlmc.montecarlo.definitions.tables.evidence_rows import as_filter, check_sizes
 from xlmc.montecarlo.definitions.tables.filters import LIMITS, contradiction
 from xlmc.montecarlo.distributions.parameters import show
-from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
+from xlmc.montecarlo.distributions.spelling import by_names, did_you_mean, name_key
 from xlmc.montecarlo.model.draw_binding import draw_of
 from xlmc.montecarlo.model.loading import filter_faults, model_with_values
 from xlmc.montecarlo.model.model import CompiledModel
@@ -254,6 +254,7 @@ def _refuse_switch(model: CompiledModel, change: Switched) -> None:
 def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
     """Return the definitions with the changes of assumptions and filters."""
     assumptions = {name_key(each.name): each for each in model.assumptions}
+    called = {key: each.name for key, each in by_names(model.assumptions).items()}
     filters = {name_key(each.name): each for each in (*model.filters, *model.forecast_filters)}
     forecasts = {name_key(each.name): each for each in model.forecasts}
     unused = {name_key(each.name) for each in model.definitions.unused}
@@ -278,9 +279,9 @@ def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
             key = _known(change.forecast, forecasts, "forecast", change)
             forecasts[key] = _stated(forecasts[key], change)
         elif isinstance(change, Correlated):
-            _correlate(correlations, change)
+            _correlate(correlations, change, called)
         elif not isinstance(change, Typed | Switched | Tabulated):
-            key = _known(change.assumption, assumptions, "assumption", change)
+            key = _known(called.get(name_key(change.assumption), change.assumption), assumptions, "assumption", change)
             assumptions[key] = _other(assumptions[key], change, model.lowering)
             last[key] = change
     for key, change in last.items():
@@ -296,13 +297,13 @@ def _changed(model: CompiledModel, changes: Iterable[Change]) -> Definitions:
     )
 
 
-def _correlate(correlations: list[Correlation], change: Correlated) -> None:
+def _correlate(correlations: list[Correlation], change: Correlated, called: Mapping[str, str]) -> None:
     """Put the other coefficient in the place of the workbook's.
 
     Raises:
         DefinitionError: the workbook gives the two none, or it is no coefficient.
     """
-    pair = {name_key(change.first), name_key(change.second)}
+    pair = {name_key(called.get(name_key(name), name)) for name in (change.first, change.second)}
     place = next((i for i, c in enumerate(correlations) if {name_key(c.first), name_key(c.second)} == pair), None)
     if place is None:
         message = f"the workbook has no correlation of {change.first!r} and {change.second!r}"
@@ -472,6 +473,6 @@ def _check(assumption: Assumption, change: Change) -> None:
         raise DefinitionError(f"{assumption.name}: {assumption.family.name} cannot be cut off", where=where, hint=hint)
     if assumption.cells:
         return  # the model computes them, and checks what they give
-    draw = Draw.of(assumption.name, assumption.family, assumption.given)
+    draw = Draw.of(assumption.name, assumption.family, assumption.given, assumption.stream)
     if (fault := draw.fault()) is not None:
         raise DefinitionError(f"{assumption.name}: {fault.message}", where=where, hint=fault.hint)

@@ -63,7 +63,7 @@ def draw_of(assumption: Assumption, lowering: Lowering) -> Draw:
         for key, cell in assumption.formulas.items()
     }
     given = {**assumption.given, **computed}
-    draw = Draw.of(assumption.name, family, given)
+    draw = Draw.of(assumption.name, family, given, assumption.stream)
     if family.given_by and draw.varying:  # the member is searched for once
         message = f"{assumption.name}: a distribution given by {family.given_by} cannot depend on another assumption"
         raise VaryingError(message, where=draw.varying[0], hint="give it by its parameters, or by numbers")

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Assumption
-from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.distributions.spelling import by_names, name_key
 
 __all__ = ["input_points"]
 
@@ -43,7 +43,7 @@ def _spelt(assumptions: Sequence[Assumption], live: Sequence[Assumption], names:
     Raises:
         SimulationError: one is missing, unknown or frozen.
     """
-    known, found = {name_key(a.name): a for a in assumptions}, dict[str, str]()
+    known, found = by_names(assumptions), dict[str, str]()
     for name in names:
         assumption = known.get(name_key(name))
         if assumption is None:

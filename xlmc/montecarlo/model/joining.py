@@ -22,7 +22,7 @@ from xlmc.excel.workbook.workbook import CellContent, Formula, LinkedBook, Sheet
 from xlmc.montecarlo.definitions.definitions import Assumption, Check, Definitions, Filter, Forecast
 from xlmc.montecarlo.definitions.feeds import Feed, Feeding
 from xlmc.montecarlo.definitions.units import factor_between
-from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
+from xlmc.montecarlo.distributions.spelling import by_names, did_you_mean, name_key
 from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["joined"]
@@ -152,7 +152,8 @@ class _Joining:
         own = self._model.definitions
         names = _Names((*own.filters, *own.forecast_filters, *own.evidence, *own.checks))
         parts = [self._left(own, "")]
-        self._drawn = {name_key(a.name): ("", a) for a in parts[0].assumptions}
+        self._drawn = {name_key(a.names[-1]): ("", a) for a in parts[0].assumptions}
+        self._called = {name_key(name) for a in parts[0].assumptions for name in a.names}
         self._tied = {frozenset((row.first, row.second)): row for row in parts[0].correlations}
         self._shared: dict[Cell, Cell] = {}
         for name, source in self._books.items():
@@ -202,13 +203,17 @@ class _Joining:
         own: list[Assumption] = []
         for each in found.assumptions:
             here = _definition_in_book(each, book)
-            other = self._drawn.get(name_key(each.name))
+            other = self._drawn.get(name_key(each.names[-1]))
             if other is None:
-                self._drawn[name_key(each.name)] = (book, each)
+                if each.stream and name_key(each.name) in self._called:  # the label of another draw, too
+                    here = replace(here, name=f"{each.name} ({book})")
+                    each = replace(each, name=here.name)
+                self._called |= {name_key(name) for name in here.names}
+                self._drawn[name_key(each.names[-1])] = (book, each)
                 own.append(here)
             else:
                 self._share(here, each, book, other)
-        spelt = {name_key(a.name): self._drawn[name_key(a.name)][1].name for a in found.assumptions}
+        spelt = {name_key(a.name): self._drawn[name_key(a.names[-1])][1].name for a in found.assumptions}
         asked = {name_key(feed.answer) for feed, _, _, _ in self._fed.values() if self._book(feed.file) == book}
         for_answers = [f for f in found.forecast_filters if asked & set(map(name_key, f.only_for))]
         filters = (*found.filters, *(replace(each, only_for=()) for each in for_answers))
@@ -347,9 +352,9 @@ def _found(name: str, known: Mapping[str, Iterable[Any]], label: str) -> Any:
     Raises:
         SimulationError: none has.
     """
-    for each in (each for kind in known.values() for each in kind):
-        if name_key(each.name) == name_key(name):
-            return each
+    for kind in known.values():
+        if (found := by_names(kind).get(name_key(name))) is not None:
+            return found
     names = [each.name for each in next(iter(known.values()))]
     message = f"there is no {' or '.join(known)} {name!r}"
     raise SimulationError(message, where=label, hint=did_you_mean(name, names) if names else None)

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import SimulationError
-from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
+from xlmc.montecarlo.distributions.spelling import by_names, did_you_mean, name_key
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
@@ -36,9 +36,10 @@ def assumption_named(model: CompiledModel, name: str, *, drawn: bool = False) ->
     Raises:
         SimulationError: there is none, or several have this keyword.
     """
-    names = [a.name for a in (model.live if drawn else model.assumptions)]
-    found = [each for each in names if name_key(each) == name_key(name)]
-    found = found or [each for each in names if keyword(each) == keyword(name)]
+    those = model.live if drawn else model.assumptions
+    names = [a.name for a in those]
+    known = by_names(those).get(name_key(name))
+    found = [known.name] if known else [each for each in names if keyword(each) == keyword(name)]
     if len(found) == 1:
         return found[0]
     if found:
@@ -56,7 +57,9 @@ def forecast_named(model: CompiledModel, name: str) -> str:
     Raises:
         SimulationError: there is none.
     """
-    names = {name_key(f.name): f.name for f in model.forecasts}
-    if name_key(name) not in names:
-        raise SimulationError(f"there is no forecast {name!r}", hint=did_you_mean(name, names.values()))
-    return names[name_key(name)]
+    found = by_names(model.forecasts).get(name_key(name))
+    if found is None:
+        raise SimulationError(
+            f"there is no forecast {name!r}", hint=did_you_mean(name, [f.name for f in model.forecasts])
+        )
+    return found.name

@@ -26,6 +26,7 @@ from xlmc.excel.workbook.workbook import CellValue, Workbook
 from xlmc.montecarlo.definitions.definitions import Filter
 from xlmc.montecarlo.definitions.definitions_reader import NO_SWITCHES, read_definitions
 from xlmc.montecarlo.definitions.feeds import Feed
+from xlmc.montecarlo.definitions.number_styles import in_style
 from xlmc.montecarlo.definitions.tables.filters import LIMIT_HINT
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.model.joining import joined
@@ -132,9 +133,10 @@ def build_model(
     definitions = read_definitions(workbook, ENGINES, tabulated, switched, python)
     if definitions.problems:
         raise _joined(definitions.problems)
-    model = _without_dashes(CompiledModel(workbook, definitions, path))
-    if faults := filter_faults(model):
-        raise _joined(faults)
+    with in_style(definitions.settings.number_style):
+        model = _without_dashes(CompiledModel(workbook, definitions, path))
+        if faults := filter_faults(model):
+            raise _joined(faults)
     return model
 
 

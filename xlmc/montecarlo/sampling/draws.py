@@ -48,6 +48,7 @@ class Draw:
     Attributes:
         parameters: numbers, or cells whose numbers `DynamicParameters` gives, in the family's order.
         cutoffs: lower and upper, likewise; None without truncation.
+        stream: the name that its uniforms are drawn by, where that is another.
 
     Those that vary are checked in every trial. Where all are numbers, `fault` checks them, and nothing else does.
     """
@@ -56,16 +57,17 @@ class Draw:
     family: Family
     parameters: tuple[float | Cell, ...]
     cutoffs: tuple[float | Cell, float | Cell] | None = None
+    stream: str = ""
 
     @classmethod
-    def of(cls, name: str, family: Family, given: Mapping[str, float | Cell]) -> Draw:
+    def of(cls, name: str, family: Family, given: Mapping[str, float | Cell], stream: str = "") -> Draw:
         """Make a draw from parameters by key, with `lower_cutoff` and `upper_cutoff` if the draw is cut off."""
         parameters = dict(given)
         for key, each in given.items():
             if isinstance(each, Real):
                 parameters[key] = float(each)
         cutoffs = parameters.pop("lower_cutoff", -np.inf), parameters.pop("upper_cutoff", np.inf)
-        return cls(name, family, family.bind((), parameters), cutoffs if len(parameters) < len(given) else None)
+        return cls(name, family, family.bind((), parameters), cutoffs if len(parameters) < len(given) else None, stream)
 
     def fault(self) -> Fault | None:
         """Say what keeps its numbers from being a distribution; None if some vary, for each trial has its own then."""
@@ -215,7 +217,8 @@ class Sampler:
         names += [draw.name for stage in stages for draw in stage.draws if draw.name not in names]
         self._rows = np.empty((len(names), block))
         self._row_of = {name: row for row, name in enumerate(names)}
-        self._margins = (plan or SamplingPlan.of("mc", block)).margins(seed, names)
+        streams = {draw.name: draw.stream for stage in stages for draw in stage.draws if draw.stream}
+        self._margins = (plan or SamplingPlan.of("mc", block)).margins(seed, names, streams)
         self._stages, self._groups, self._parameters = stages, groups, parameters
         self._block = block
         grouped = {name for group in groups for name in group.names}

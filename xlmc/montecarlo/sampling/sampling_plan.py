@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -14,6 +15,8 @@ from xlmc.montecarlo.sampling.sampling_methods import METHODS, REPLICATES, STRAT
 from xlmc.montecarlo.sampling.streams import Stream
 
 __all__ = ["MOST_OUTER", "Repeated", "SamplingPlan"]
+
+_OWN: Final[Mapping[str, str]] = MappingProxyType({})
 
 MOST_OUTER: Final = STRATA
 """The most draws of an outer loop: intervals of its Latin hypercube."""
@@ -92,21 +95,27 @@ class SamplingPlan:
         """How many replicates there are; 0 if the trials themselves are independent."""
         return self.trials // self.size if self.size else 0
 
-    def margins(self, seed: int, names: Sequence[str]) -> Sequence[Margin]:
+    def margins(self, seed: int, names: Sequence[str], streams: Mapping[str, str] = _OWN) -> Sequence[Margin]:
         """Return, for each assumption, the object that draws its uniforms.
+
+        Args:
+            seed: of the run.
+            names: of the assumptions.
+            streams: name of an assumption -> the name that its uniforms are drawn by, where that is another.
 
         Raises:
             SimulationError: the method cannot draw so many assumptions.
         """
         dimensions = {name: dimension for dimension, name in enumerate(self.order or names)}
         if self.outer:
-            return [self._nested_margin(seed, name) for name in names]
-        return METHODS[self.method].margins(seed, {name: dimensions[name] for name in names}, self.size)
+            return [self._nested_margin(seed, name, streams.get(name, name)) for name in names]
+        of_streams = {streams.get(name, name): dimensions[name] for name in names}
+        return METHODS[self.method].margins(seed, of_streams, self.size)
 
-    def _nested_margin(self, seed: int, name: str) -> Margin:
+    def _nested_margin(self, seed: int, name: str, stream: str) -> Margin:
         if name not in self.outer:
-            return Stream(seed, name)
-        return Repeated(LatinHypercube(seed, name, self.replicates), self.size)
+            return Stream(seed, stream)
+        return Repeated(LatinHypercube(seed, stream, self.replicates), self.size)
 
     def replicate_of(self, trials: NDArray[np.int64]) -> NDArray[np.int64] | None:
         """Return the replicate of each trial, (n,); None if the trials themselves are independent."""

@@ -40,8 +40,11 @@ _LARGEST, _SMALLEST = 15, -4
 """Powers of ten from which on, and below which, a number is written with a power of ten."""
 
 _DIGITS = 6
-_EXACT_DIGITS = range(6, 13)  # of a value whose error is 0
-_NOISE = 1e-9  # share of such a value that may come from rounding in formulas
+_EXACT_DIGITS: Final = range(6, 16)
+"""Digits of a number that is exact; one that has more of them is no decimal number, and six are enough."""
+_NOISE: Final = 1e-13
+"""Share of such a number that may come from rounding in formulas, where it has no more than `_ROUND` digits."""
+_ROUND: Final = 10
 
 _USUAL: Final = ",", "."
 
@@ -128,13 +131,17 @@ def whole_text(value: float) -> str:
 
 
 def exact_text(value: float) -> str:
-    """Write a number that is exact, up to rounding in formulas, in the fewest digits, six or more, that say what it is.
+    """Write a number that is exact, up to rounding in formulas, in the fewest digits, six or more, that say what it is;
+    in six where no decimal number is.
 
-    >>> exact_text(1234567.8), exact_text(0.1 + 0.2)
-    ('1,234,567.8', '0.3')
+    >>> exact_text(1234567.8), exact_text(0.1 + 0.2), exact_text(1 / 3)
+    ('1,234,567.8', '0.3', '0.333333')
     """
-    known = next((d for d in _EXACT_DIGITS if abs(float(f"{value:.{d}g}") - value) <= _NOISE * abs(value)), 12)
-    return number_text(value, known)
+    for digits in _EXACT_DIGITS:
+        noise = _NOISE * abs(value) if digits <= _ROUND else 0.0
+        if abs(float(f"{value:.{digits}g}") - value) <= noise:
+            return number_text(value, digits)
+    return number_text(value)
 
 
 def decimals_of(error: float | None) -> int | None:
@@ -145,8 +152,8 @@ def decimals_of(error: float | None) -> int | None:
 def format_estimate(value: float, error: float | None, decimals: int | None = None) -> str:
     """Write the error to two significant digits and the value to the same decimal, or both to `decimals`.
 
-    A value whose error is not known has six digits; one whose error is 0, as a constant's, has more where it needs
-    them.
+    A value whose error is not known has six digits; one whose error is 0, as a constant's, stands alone, too, with more
+    where it needs them.
 
     >>> format_estimate(17.02134, 0.00231)
     '17.0213 ± 0.0023'
@@ -155,12 +162,12 @@ def format_estimate(value: float, error: float | None, decimals: int | None = No
     >>> format_estimate(17.02134, None)
     '17.0213'
     >>> format_estimate(1234567.8, 0.0), format_estimate(0.1 + 0.2, 0.0)
-    ('1,234,567.8 ± 0', '0.3 ± 0')
+    ('1,234,567.8', '0.3')
     """
     if error is None or not math.isfinite(value):
         return number_text(value) if decimals is None else fixed_text(value, decimals)
     if error == 0.0:
-        return f"{exact_text(value)} ± 0"
+        return exact_text(value)
     size = two_digit_exponent(max(abs(value), error))
     if not _SMALLEST <= size < _LARGEST:
         scaled = format_estimate(value / 10.0**size, error / 10.0**size)

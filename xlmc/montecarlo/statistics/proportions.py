@@ -170,7 +170,10 @@ def probability_between(
 
 
 def _estimate_between(sample: Sample, first: int, stop: int, confidence: float, method: Method) -> Estimate:
-    """Estimate the share of the trials from rank `first` to before `stop`, counted from 0."""
+    """Estimate the share of the trials from rank `first` to before `stop`, counted from 0; exact where none varies."""
+    if sample.still and sample.n:
+        all_or_none = float(stop > first)
+        return Estimate(all_or_none, 0.0, (all_or_none, all_or_none), sample.n)
     if sample.w is None and sample.group is None:
         return proportion(stop - first, sample.n, confidence=confidence, method=method)
     if sample.n == 0:

@@ -107,6 +107,11 @@ class Sample:
         first = int(np.searchsorted(self.x, 0.0, side="right"))
         return first == self.n or bool(self.x[first] == 1.0)
 
+    @property
+    def yes_no_at_most(self) -> bool:
+        """Whether every value is 0 or 1, of any number of trials, also where no draw decides which."""
+        return self.yes_no or (bool(self.n) and self.x[0] == self.x[-1] and self.x[0] in (0.0, 1.0))
+
     @cached_property
     def whole(self) -> bool:
         """Whether every value is a whole number, and not all are the same."""

@@ -332,7 +332,7 @@ def test_a_call_in_the_cell_of_an_old_assumption_wins(read):
     found = read(TOTAL, OFFSET, SKID, cells=cells)
     assert {(a.name, a.source) for a in found.assumptions} == {
         ("Offset", "Crystal Ball"),
-        ("Sheet1!B2#1", "RiskNormal in the cell"),
+        ("Skid", "RiskNormal in the cell"),
     }
     assert not found.problems
     assert not found.refused

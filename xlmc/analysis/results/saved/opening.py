@@ -210,6 +210,11 @@ class _Column:
     sha256: str
 
 
+def _called(column: _Column, named: Mapping[str, str]) -> _Column:
+    """Return a column of draws under the name that its assumption has now."""
+    return replace(column, name=named.get(column.name, column.name)) if column.kind in ("input", "prior") else column
+
+
 class _Columns:
     """The columns of a saved run, as the document lists them.
 
@@ -220,7 +225,8 @@ class _Columns:
     def __init__(self, found: object, model: CompiledModel, path: Path) -> None:
         require(isinstance(found, list), "its columns")
         assert isinstance(found, list)
-        listed = [build(_Column, each, "a column") for each in found]
+        named = {name: a.name for a in model.live for name in a.names}  # a run may be older than their labels
+        listed = [_called(build(_Column, each, "a column"), named) for each in found]
         self._listed, self._path = listed, path
         self._names = {kind: [each.name for each in listed if each.kind == kind] for kind in _KINDS}
         live = [a.name for a in model.live]
@@ -261,8 +267,14 @@ class _Columns:
         return self._keeper.columns({name: (kind, name) for name in self._names[kind]})
 
 
+def _spelt(model: CompiledModel) -> dict[str, str]:
+    """Return the name of each assumption that is drawn, by the keys of all that it may be called."""
+    others = {name_key(name): a.name for a in model.live for name in a.names}
+    return {**others, **{name_key(name): name for name in model.draws}}
+
+
 def _simulation(found: Document, model: CompiledModel, columns: _Columns) -> RunResult:
-    settings, spelt = settings_of(found["settings"]), {name_key(name): name for name in model.draws}
+    settings, spelt = settings_of(found["settings"]), _spelt(model)
     order, invalid = texts(found["order"], "its order of dimensions"), counts(found["invalid"], "its invalid draws")
     require(set(order) <= spelt.keys(), "its order of dimensions")
     require(set(invalid) <= spelt.keys(), "its invalid draws")

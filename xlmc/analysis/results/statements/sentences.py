@@ -147,7 +147,7 @@ def _yes_text(result: ForecastResult, yes: Estimate) -> str:
     That a lower bound is a yes makes the answer one; where it is a no, the answer may be either.
     """
     role = result.definition.role
-    says = "" if result.sample.yes_no else "; numbers other than 0 and 1 count as yes"
+    says = "" if result.sample.yes_no_at_most else "; numbers other than 0 and 1 count as yes"
     if (role, yes.value) in ((Role.LOWER, 0.0), (Role.UPPER, 1.0)):
         return f"the bound does not tell{says}"
     if yes.value in (0.0, 1.0):
@@ -168,7 +168,7 @@ def _probabilities(result: ForecastResult) -> Iterator[Statement]:
     definition, above = result.definition, result.statistics.probability_above
     name, units = definition.name, f" {definition.units}" if definition.units else ""
     limit = definition.threshold
-    told = limit is not None and 0 <= limit < 1 and result.yes is not None and result.sample.yes_no
+    told = limit is not None and 0 <= limit < 1 and result.yes is not None and result.sample.yes_no_at_most
     if limit is not None and above is not None and not told:
         event = f"{name} > {result.form.number(limit)}{units}"
         yield Statement(name, "threshold", _probability_text(event, above, _relation(definition.role, "above")))

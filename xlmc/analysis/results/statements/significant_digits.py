@@ -203,6 +203,8 @@ def percent_text(share: Estimate) -> str:
 
 def _bound(share: Estimate) -> str:
     trials = f"{'0 of' if share.value == 0.0 else 'all'} {count_text(share.n)} trials"
+    if share.n == 1:
+        trials = "0 of 1 trial" if share.value == 0.0 else "the only trial"
     reach = reach_text(share)
     return f"{trials}; {reach} with 95 % confidence" if reach else trials
 

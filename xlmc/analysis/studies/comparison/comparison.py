@@ -31,7 +31,7 @@ from xlmc.analysis.studies.steps import Steps
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.units import factor_between
-from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.distributions.spelling import by_names, name_key
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
@@ -344,12 +344,14 @@ def _match_forecasts(
         SimulationError: a pair names a forecast that is not there, or there are no pairs at all.
     """
     mine, theirs = ({name_key(f.name): f for f in model.forecasts} for model in (first, second))
-    given = {name_key(a): name_key(b) for a, b in pairs.items()}
-    for names_here, names, model in ((mine, pairs.keys(), first), (theirs, pairs.values(), second)):
-        for name in names:
-            if name_key(name) not in names_here:
-                hint = f"there are {', '.join(repr(f.name) for f in model.forecasts)}"
-                raise SimulationError(f"there is no forecast {name.strip()!r}", where=model.path.name, hint=hint)
+
+    def key_of(name: str, model: CompiledModel) -> str:
+        if (found := by_names(model.forecasts).get(name_key(name))) is None:
+            hint = f"there are {', '.join(repr(f.name) for f in model.forecasts)}"
+            raise SimulationError(f"there is no forecast {name.strip()!r}", where=model.path.name, hint=hint)
+        return name_key(found.name)
+
+    given = {key_of(here, first): key_of(there, second) for here, there in pairs.items()}
     taken = set(given.values())
     given |= {key: key for key in mine if key in theirs and key not in given and key not in taken}
     if not given:

@@ -22,7 +22,7 @@ from xlmc.excel.address import InFormula
 from xlmc.montecarlo.definitions.definitions import Assumption, Copula, Definitions, Forecast
 from xlmc.montecarlo.definitions.units import factor_between
 from xlmc.montecarlo.distributions.empirical import Empirical
-from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.distributions.spelling import by_names, name_key
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulation import RunResult
 
@@ -49,8 +49,7 @@ def fed_model(model: CompiledModel, source: RunResult, feeds: Mapping[str, str])
             draws it, units are of two kinds, too few trials give a number, or one of several assumptions is correlated
             with one that is not fed.
     """
-    named = {name_key(a.name): a for a in model.assumptions}
-    given = {name_key(f.name): f for f in source.model.forecasts}
+    named, given = by_names(model.assumptions), by_names(source.model.forecasts)
     fed: dict[str, Assumption] = {}
     values: list[Floats] = []
     for mine, theirs in feeds.items():
@@ -80,7 +79,7 @@ def fed_model(model: CompiledModel, source: RunResult, feeds: Mapping[str, str])
 
 def _found(name: str, known: Mapping[str, Named], kind: str, model: CompiledModel) -> Named:
     if name_key(name) not in known:
-        hint = f"there are {', '.join(repr(each.name) for each in known.values())}"
+        hint = f"there are {', '.join(dict.fromkeys(repr(each.name) for each in known.values()))}"
         raise SimulationError(f"there is no {kind} {name.strip()!r}", where=model.path.name, hint=hint)
     return known[name_key(name)]
 

@@ -12,7 +12,7 @@ from typing import Final
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.units import factor_between
-from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.distributions.spelling import by_names, name_key
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.number_text import number_text
 
@@ -221,12 +221,13 @@ def read_tolerances(texts: Iterable[str], forecasts: Sequence[Forecast]) -> Tole
             _refuse_idle(stated, general, forecasts)
             general.append(stated)
             continue
-        if name_key(name) not in {name_key(f.name) for f in forecasts}:
+        named = by_names(forecasts).get(name_key(name))
+        if named is None:
             known = ", ".join(repr(f.name) for f in forecasts)
             raise SimulationError(f"there is no forecast {name.strip()!r} for the tolerance", hint=f"there are {known}")
-        if name_key(name) in single:
+        if name_key(named.name) in single:
             raise SimulationError(f"two tolerances are stated for {name.strip()!r}", hint="keep one of them")
-        single[name_key(name)] = stated
+        single[name_key(named.name)] = stated
     return Tolerances(general, single)
 
 

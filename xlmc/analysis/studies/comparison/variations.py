@@ -6,17 +6,21 @@ Every assumption has a random stream of its own, so a variation draws the same n
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from fnmatch import fnmatchcase
+from types import MappingProxyType
+from typing import Final
 
 from xlmc.errors import SimulationError
-from xlmc.montecarlo.definitions.definitions import Assumption
+from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
 from xlmc.montecarlo.definitions.stopping import NO_GOAL
-from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.distributions.spelling import by_names, name_key
 from xlmc.montecarlo.model.model import CompiledModel
 
-__all__ = ["names_of", "with_changes", "with_plain_sampling"]
+__all__ = ["names_of", "names_of_rows", "with_changes", "with_plain_sampling"]
+
+_NO_OTHERS: Final[Mapping[str, str]] = MappingProxyType({})
 
 
 def with_changes(
@@ -87,17 +91,37 @@ def _assumption(
     return assumption
 
 
-def names_of(text: str, known: Sequence[str], kind: str) -> tuple[str, ...]:
-    """Return the known names that a list of patterns fits.
+def names_of(text: str, known: Sequence[str], kind: str, also: Mapping[str, str] = _NO_OTHERS) -> tuple[str, ...]:
+    """Return the known names that a list of patterns fits, or the one that is the whole text.
+
+    Args:
+        text: the patterns, with commas between them.
+        known: the names.
+        kind: what they are names of, for the message.
+        also: key of another name of one of them -> its name.
 
     Raises:
         SimulationError: a pattern fits none.
     """
     found: dict[str, None] = {}
-    for pattern in text.split(","):
+    called = {**also, **{name_key(name): name for name in known}}
+    for pattern in [text] if name_key(text) in called else text.split(","):
         fitting = [name for name in known if fnmatchcase(name_key(name), name_key(pattern))]
+        if name_key(pattern) in called:
+            fitting = [called[name_key(pattern)]]
         if not fitting:
             hint = f"there are {', '.join(map(repr, known))}"
             raise SimulationError(f"no {kind} has the name {pattern.strip()!r}", hint=hint)
         found |= dict.fromkeys(fitting)
     return tuple(found)
+
+
+def names_of_rows(text: str, rows: Iterable[Assumption] | Iterable[Forecast], kind: str) -> tuple[str, ...]:
+    """Return the names of the rows that a list of patterns fits; see `names_of`.
+
+    Raises:
+        SimulationError: a pattern fits none.
+    """
+    known = by_names(rows)
+    names = [*dict.fromkeys(each.name for each in known.values())]
+    return names_of(text, names, kind, {key: each.name for key, each in known.items()})

@@ -10,8 +10,9 @@ what its draws are too frequent by, inverted; estimates divide by the sum of the
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from types import MappingProxyType
 from typing import Final
 
 import numpy as np
@@ -36,6 +37,7 @@ DEFENSIVE: Final = 0.1
 
 _PILOT_SHARE: Final = 8
 _LEAST_PILOT, _MOST_PILOT = 4_096, 65_536
+_OWN: Final[Mapping[str, str]] = MappingProxyType({})
 _APART: Final = 1 << 40
 """Between the seeds of the pilot and of the weighted run, so that their streams are independent."""
 
@@ -82,9 +84,9 @@ def _learned(model: CompiledModel, trials: int, seed: int) -> dict[str, Floats]:
         message = f"the filters accept none of {count_text(trials)} trials, so there is nothing to learn a grid from"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
     found = {}
-    for name in (a.name for a in model.live):
+    for name, stream in ((a.name, a.stream or a.name) for a in model.live):
         uniforms = np.empty(trials)
-        Stream(seed, name).uniforms(0, uniforms)
+        Stream(seed, stream).uniforms(0, uniforms)
         counts = np.bincount((uniforms[run.trial_index] * BINS).astype(np.intp), minlength=BINS)
         found[name] = _density(counts.astype(np.float64))
     return found
@@ -129,10 +131,11 @@ class _GridPlan(SamplingPlan):
     grids: dict[str, Floats] = field(default_factory=dict)
     weights: Floats = field(default_factory=lambda: np.empty(0))
 
-    def margins(self, seed: int, names: Sequence[str]) -> list[Margin]:
+    def margins(self, seed: int, names: Sequence[str], streams: Mapping[str, str] = _OWN) -> list[Margin]:
         """See `SamplingPlan`."""
         return [
-            _Bent(Stream(seed, name), self.grids[name], self.weights, index == 0) for index, name in enumerate(names)
+            _Bent(Stream(seed, streams.get(name, name)), self.grids[name], self.weights, index == 0)
+            for index, name in enumerate(names)
         ]
 
 

@@ -1,7 +1,8 @@
 """Calls in cells that stand for assumptions: `=10+RiskNormal(5,1)*2`, `=CB.Uniform(0,1)`, `=NORM.INV(RAND(),5,1)`.
 
-Each call is an assumption of its own, named `Sheet!Cell#k` for the k-th call of the cell, from the left and from 1, or
-as it names itself. In the formula a cell of its own stands instead of the call; an argument that is an expression
+Each call is an assumption of its own. It is called as it names itself, or else by the label beside its cell, and drawn
+by its own name or by that of the call: `Sheet!Cell#k` for the k-th call of the cell, from the left and from 1. In the
+formula a cell of its own stands instead of the call; an argument that is an expression
 becomes such a cell, too. So the rest of a run sees nothing but assumptions and formulas.
 
 Formulas also mark answers, by `RiskOutput` or by a cell that shows results of theirs, and `RiskCorrmat` names matrices
@@ -18,6 +19,7 @@ from typing import Final
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import Resolver, ir
+from xlmc.excel.workbook.labels import Label, label_of
 from xlmc.excel.workbook.lazy_sheets import LazySheets
 from xlmc.excel.workbook.workbook import Formula, Workbook
 from xlmc.montecarlo.definitions.computed import Computed
@@ -29,7 +31,7 @@ from xlmc.montecarlo.definitions.in_cells.result_functions import ResultCall, me
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.identity import Claims
 from xlmc.montecarlo.definitions.tables.table_rows import static_value
-from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.distributions.spelling import by_names, name_key
 from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["InCells", "holds_call", "in_cell_forecasts", "read_in_cells"]
@@ -162,9 +164,12 @@ def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findin
     found.rewritten |= reading.trees
     found.taken |= reading.taken
     found.shifted |= {site: (host, tree) for site, tree in reading.shifted.items()}
+    alone = reading.draws_alone(found.rewritten[host])
     for position in sorted(reading.draws):
         draw = reading.draws[position]
         assumption = replace(draw.assumption, name=_free_name(draw.assumption, claims, findings))
+        if draw.properties.name is None:
+            assumption = _labelled(assumption, reading.label, alone, claims)
         found.assumptions.append(assumption)
         found.draws[assumption.name] = draw
     for name in reading.idle:
@@ -185,6 +190,24 @@ def _free_name(assumption: Assumption, claims: Claims, findings: Findings) -> st
         message = f"another assumption is called {assumption.name!r}; this one is called {name!r}"
         findings.notice(message, assumption.row)
     return claims.take_name(name, assumption.row)
+
+
+def _labelled(assumption: Assumption, label: Label, alone: bool, claims: Claims) -> Assumption:
+    """Return a draw under the label beside its cell, drawn by the name of its call: `Price`, or `Price #2` for the
+    second call of a formula that is more than one call.
+
+    Where another assumption has that name, the cell follows; without a label it keeps the name of its call.
+    """
+    if not label.name:
+        return assumption
+    stream, cell = assumption.name, assumption.row
+    name = label.name if alone else f"{label.name} #{stream.rpartition('#')[2]}"
+    if name_key(name) in claims.names:
+        name = f"{name} ({cell})"
+    if name_key(name) in claims.names:
+        return assumption
+    claims.names[name_key(stream)] = name, cell  # by which it may be called, too
+    return replace(assumption, name=claims.take_name(name, cell), stream=stream, units=assumption.units or label.unit)
 
 
 def _about(error: FormulaError | DefinitionError, cell: Cell, formula: Formula) -> FormulaError:
@@ -239,6 +262,7 @@ def _any_of(names: Collection[str]) -> re.Pattern[str] | None:
 
 
 def in_cell_forecasts(
+    workbook: Workbook,
     found: InCells,
     assumptions: Iterable[Assumption],
     computed: Computed,
@@ -249,6 +273,7 @@ def in_cell_forecasts(
     """Return the cells with `RiskOutput`, then those of which `RiskMean(B9)` and its like show results.
 
     Args:
+        workbook: whose labels the cells are called by where the calls do not name them.
         found: the calls of the workbook.
         assumptions: all, about which results may be asked for by their names.
         computed: which cells something gives a value.
@@ -256,13 +281,14 @@ def in_cell_forecasts(
         claims: takes their names and cells; the rows of tables have taken theirs.
         findings: takes remarks.
     """
-    outputs = [
-        Forecast(_take_forecast(output.name or str(cell), cell, claims, findings), cell, cell, output.units, central)
-        for cell, output in found.outputs.items()
-        if cell not in claims.cells
-    ]
+    outputs = []
+    for cell, output in found.outputs.items():
+        if cell not in claims.cells:
+            label = Label() if output.name else label_of(workbook, cell)
+            name = _take_forecast(output.name or label.name or str(cell), cell, claims, findings)
+            outputs.append(Forecast(name, cell, cell, output.units or label.unit, central))
     shown = []
-    inputs = {name_key(each.name): each for each in assumptions}
+    inputs = by_names(assumptions)
     for cell, asked in found.results.items():
         for each in asked:
             for of in each.forecasts:
@@ -276,8 +302,9 @@ def in_cell_forecasts(
                 elif of not in claims.cells:
                     message = f"{of} is taken for a forecast, because {each.function} shows results of it"
                     findings.notice(message, cell)
-                    name = _take_forecast(str(of), of, claims, findings)
-                    shown.append(Forecast(name, of, cell, central=central))
+                    label = label_of(workbook, of)
+                    name = _take_forecast(label.name or str(of), of, claims, findings)
+                    shown.append(Forecast(name, of, cell, label.unit, central))
     return [*outputs, *shown]
 
 

@@ -5,12 +5,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Final
 
 from xlmc.errors import FormulaError
 from xlmc.excel.address import Area, Cell, InFormula
 from xlmc.excel.formula import Resolver, formula_text, ir
 from xlmc.excel.formula.substitute import is_bound, substitute
+from xlmc.excel.workbook.labels import Label, label_of
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, DataRange, Parameter
@@ -111,6 +113,17 @@ class CellReading:
         if not self._has_theory:
             self.shown = None
         return substitute(known, self._replacement)
+
+    @cached_property
+    def label(self) -> Label:
+        """The name and the unit beside the cell."""
+        return label_of(self._workbook, self.host)
+
+    def draws_alone(self, tree: ir.Expression | FormulaError) -> bool:
+        """Whether the rewritten formula is one draw, which it may shift, and nothing else."""
+        return any(
+            tree in (draw.assumption.cell, self.shifted.get(draw.assumption.cell)) for draw in self.draws.values()
+        )
 
     def _refuse_other_programs(self, tree: ir.Expression) -> None:
         """Refuse a call of a program that xlmc does not read; a cell that shows a result of it can show none here.

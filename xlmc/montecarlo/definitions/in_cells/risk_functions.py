@@ -22,7 +22,6 @@ from xlmc.montecarlo.definitions.in_cells.call_draws import Arguments, Drawn, Pr
 from xlmc.montecarlo.definitions.in_cells.risk_properties import is_property, properties_of
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.distributions.by_percentiles import by_percentiles
-from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["ALTERNATES", "RISK", "TRUNCATED", "risk_draw"]
@@ -306,7 +305,7 @@ def _alternate_draw(
         except ValueError as error:
             hint = "give one percentile for each parameter that is left out"
             raise FormulaError(f"{function}: {error}", hint=hint) from None
-        parameters |= {f"p{show(_percent(share))}": value for share, value in points.items()}
+        parameters |= {f"p{_percent(share):.12g}": value for share, value in points.items()}
     missing = [spec.heading for spec in family.parameters if spec.key not in parameters and spec.default is None]
     if missing:
         raise FormulaError(f"{function} does not say its {missing[0]}", hint="give it, or one more percentile")

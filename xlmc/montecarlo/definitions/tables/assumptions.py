@@ -52,6 +52,9 @@ PARAMETERS = tuple(dict.fromkeys((*_OURS, "Data", *_FURTHER)))
 UNCERTAINTY = "Kind of uncertainty"
 """The column that says whether an assumption varies from lack of knowledge or by scatter."""
 
+STREAM = "Random stream"
+"""The column that names the stream of an assumption's random numbers, where that is not its own name."""
+
 _LIMITS = frozenset({"low", "minimum", "min", "high", "maximum", "max"})
 
 _FIXED = (
@@ -66,6 +69,7 @@ _FIXED = (
     UNCERTAINTY,
     "Call in",
     "Call",
+    STREAM,
 )
 _KNOWN = (*_FIXED, *PARAMETERS, *OPTIONS)
 
@@ -143,6 +147,7 @@ def _assumption(
     uncertainty = findings.attempt(word_in, row, UNCERTAINTY, Uncertainty)
     units = findings.attempt(optional_text, row, "Units") or ""
     source = findings.attempt(optional_text, row, "Source") or ""
+    stream = "" if identity is None else findings.attempt(_stream, row, identity[0], claims) or ""
     if len(findings.problems) > before or not (identity and kind):
         return None
     name, cell = identity
@@ -167,7 +172,25 @@ def _assumption(
         data=data,
         call=call,
         checked=checked,
+        stream=stream,
     )
+
+
+def _stream(row: Row, name: str, claims: Claims) -> str:
+    """Return the name that a row's random numbers are drawn by, now taken; empty where it is the row's own.
+
+    Raises:
+        DefinitionError: another assumption has it.
+    """
+    typed = optional_text(row, STREAM) or ""
+    if not typed or name_key(typed) == name_key(name):
+        return ""
+    if name_key(typed) in claims.names:
+        message = f"The assumption {claims.names[name_key(typed)][0]!r} is drawn by the stream {typed!r}, too"
+        hint = f"Clear {STREAM}, and the name of the row is that of its stream"
+        raise DefinitionError(message, where=row.cell(STREAM), hint=hint)
+    claims.names[name_key(typed)] = name, row.cell(STREAM)
+    return typed
 
 
 def _call(row: Row) -> InFormula | None:

@@ -38,7 +38,7 @@ from xlmc.montecarlo.definitions.tables.filters import LIMITS
 from xlmc.montecarlo.definitions.tables.identity import Claims
 from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
 from xlmc.montecarlo.definitions.tables.table_rows import Row, as_text, logical_in, number_in, optional_text, rows_of
-from xlmc.montecarlo.distributions.spelling import name_key, nearest, plain
+from xlmc.montecarlo.distributions.spelling import by_names, name_key, nearest, plain
 
 __all__ = ["read_scenarios"]
 
@@ -157,7 +157,7 @@ class _Headings:
         filters: Sequence[Filter],
     ) -> None:
         self._workbook = workbook
-        self._assumptions = {name_key(each.name): each for each in assumptions}
+        self._assumptions = by_names(assumptions)
         self._filters = {name_key(each.name): each for each in filters if each.evidence is None}
         self._rows = list(_named_rows(workbook, tables))
 
@@ -214,7 +214,7 @@ class _Headings:
 
     def _of_cell(self, heading: str, where: Cell) -> _Column:
         head, tail = split_sheet(heading)
-        known = [each.name for each in self._assumptions.values()]
+        known = [*dict.fromkeys(each.name for each in self._assumptions.values())]
         known += [each.name for each in self._filters.values()] + [each.name for each in self._workbook.names]
         if head is None and (is_address(tail) or self._workbook.defined_name(tail, where.sheet) is None):
             likely = nearest(heading, known)

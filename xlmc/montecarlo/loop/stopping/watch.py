@@ -11,7 +11,7 @@ from typing import Any, Final
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.stopping import Stopping
-from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.distributions.spelling import by_names, name_key
 from xlmc.montecarlo.loop.stopping.adaptive import UntilStable
 from xlmc.montecarlo.loop.stopping.precision import UntilPrecise
 from xlmc.montecarlo.loop.stopping.rule import Columns, Observed, StopRule, UntilAccepted
@@ -140,14 +140,15 @@ def chosen_rule(asked: Stopping, forecasts: Sequence[Forecast], texts: Collectio
 
 
 def _named(names: Sequence[str], forecasts: Sequence[Forecast], texts: Collection[int]) -> list[tuple[int, str, float]]:
-    index_of = {name_key(each.name): index for index, each in enumerate(forecasts) if index not in texts}
+    numbers = {each.name: index for index, each in enumerate(forecasts) if index not in texts}
+    index_of = {key: numbers[each.name] for key, each in by_names(forecasts).items() if each.name in numbers}
     if not index_of:
         raise SimulationError("there is no forecast whose precision could be asked for", hint="Define a forecast")
     for name in names:
         if name_key(name) not in index_of:
-            hint = f"choose from {', '.join(repr(forecasts[index].name) for index in index_of.values())}"
+            hint = f"choose from {', '.join(map(repr, numbers))}"
             raise SimulationError(f"there is no forecast {name!r}", hint=hint)
-    found = dict.fromkeys(index_of[name_key(name)] for name in names) or index_of.values()
+    found = dict.fromkeys(index_of[name_key(name)] for name in names) or numbers.values()
     return [(index, forecasts[index].name, forecasts[index].central) for index in found]
 
 

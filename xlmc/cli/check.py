@@ -224,11 +224,14 @@ def _drawn_with(model: CompiledModel | None, correlation: Correlation) -> str:
 
 
 def _show_need(model: CompiledModel, workbook: Workbook) -> None:
+    from xlmc.montecarlo.statistics.number_text import count_text
+
     formulas = sum(1 for _ in workbook.formula_cells())
     needed, varying = model.needed.graph.formulas, model.needed.graph.varying
     count = sum(cell in varying for cell in needed)
     counted = (
-        f"Of {formulas} formula cells the forecasts and filters need {len(needed)}; {count} vary with an assumption."
+        f"Of {count_text(formulas)} formula cells the forecasts and filters need {count_text(len(needed))}; "
+        f"{count_text(count)} vary with an assumption."
     )
     say(paragraph(counted))
     if model.needed.idle:

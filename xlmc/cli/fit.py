@@ -163,6 +163,7 @@ def fit(
 def _copy_tests(source: str, cells: str | None, vehicle: int, into: Path | None, *, as_json: bool) -> None:
     """Copy crash tests, and say what stiffness they give."""
     from xlmc.cli import fit_tests
+    from xlmc.montecarlo.statistics.number_text import number_text
 
     if into is None:
         raise click.UsageError("--tests needs --into, the workbook whose sheet Stiffness takes the tests.")
@@ -177,7 +178,7 @@ def _copy_tests(source: str, cells: str | None, vehicle: int, into: Path | None,
         return
     say(f"Written: {copied.last - copied.first + 1} tests of vehicle {vehicle}, {into}, Stiffness!A{copied.first}")
     for name, value in copied.gives.items():
-        say(f"  {name:<12} {value:.6g}")
+        say(f"  {name:<12} {number_text(value)}")
 
 
 def _chosen(found: Fitting, distribution: str | None) -> Fitted:
@@ -223,13 +224,16 @@ def _values(book: Path, reference: str) -> tuple[list[float], str, int, tuple[st
     Raises:
         DefinitionError: there is no such range, or a cell in it holds something else.
     """
+    from xlmc.cli.printing import use_number_style
     from xlmc.excel.workbook.reader import read_workbook
     from xlmc.montecarlo.definitions.cell_references import area_of_reference
     from xlmc.montecarlo.definitions.computed import Computed
+    from xlmc.montecarlo.definitions.definitions_reader import number_style_of
     from xlmc.montecarlo.definitions.tables.data import area_values
     from xlmc.montecarlo.definitions.tables.table_rows import number_in
 
     workbook = read_workbook(book)
+    use_number_style(number_style_of(workbook))
     only_sheet = next(iter(workbook.sheets)) if len(workbook.sheets) == 1 else None
     area = area_of_reference(workbook, reference, only_sheet, book)
     rows = list(area_values(workbook, area, Computed(workbook, ())))
@@ -296,12 +300,13 @@ def _report(
     as_json: Callable[[], dict[str, object]],
 ) -> StudyReport:
     """Report what was found; the row to paste comes last."""
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.document.parts import Table, blocks_of
     from xlmc.outputs.study_report import StudyReport
 
     as_row = Table(f"{row['Distribution']} as a row of xlmc_assumptions", tuple(row), (tuple(row.values()),))
-    below = f"{source}: {found.n} values"
-    verdict = f"{found.fits[0].name} describes the {found.n} values best by {found.by.upper()}."
+    below = f"{source}: {count_text(found.n)} values"
+    verdict = f"{found.fits[0].name} describes the {count_text(found.n)} values best by {found.by.upper()}."
     blocks: list[str | Block] = [verdict, *_cautions(found), _ranking(found, source, blank), _curves(found, values)]
     blocks += [f"Not fitted: {name}: {reason}." for name, reason in found.unfit.items()]
     blocks += [f"Standard errors of {', '.join(names)}: {source}." for source, names in _sources(found).items()]
@@ -314,19 +319,19 @@ def _cautions(found: Fitting) -> list[str]:
 
 
 def _ranking(found: Fitting, source: str, blank: int) -> Table:
-    from xlmc.montecarlo.statistics.number_text import styled_text
+    from xlmc.montecarlo.statistics.number_text import count_text, fixed_text
     from xlmc.outputs.document.parts import Table
 
-    left_out = f"; {blank} blank cells left out" if blank else ""
-    title = f"{source}: {found.n} values as {found.kind}{left_out}; the best by {found.by.upper()} first"
+    left_out = f"; {count_text(blank)} blank cells left out" if blank else ""
+    title = f"{source}: {count_text(found.n)} values as {found.kind}{left_out}; the best by {found.by.upper()} first"
     best = min(fitted.aic for fitted in found.fits)
     rows = tuple(
         (
             fitted.name,
             _parameters(fitted),
-            styled_text(fitted.aic - best, ".1f"),
-            styled_text(fitted.aic, ".1f"),
-            styled_text(fitted.bic, ".1f"),
+            fixed_text(fitted.aic - best, 1),
+            fixed_text(fitted.aic, 1),
+            fixed_text(fitted.bic, 1),
             _statistic(fitted.ad),
             _statistic(fitted.ks),
         )

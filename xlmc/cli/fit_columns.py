@@ -161,13 +161,16 @@ def columns_of_range(
     Raises:
         DefinitionError: there is no such range, it has a single row, or a cell holds an error.
     """
+    from xlmc.cli.printing import use_number_style
     from xlmc.errors import DefinitionError
     from xlmc.excel.address import Cell
     from xlmc.excel.workbook.reader import read_workbook
     from xlmc.montecarlo.definitions.cell_references import area_of_reference
+    from xlmc.montecarlo.definitions.definitions_reader import number_style_of
     from xlmc.montecarlo.definitions.tables.table_rows import as_text
 
     workbook = read_workbook(book)
+    use_number_style(number_style_of(workbook))
     only_sheet = next(iter(workbook.sheets)) if len(workbook.sheets) == 1 else None
     area = area_of_reference(workbook, reference, only_sheet, book)
     if area.rows < 2:
@@ -224,6 +227,7 @@ def _report(found: Fits, source: str) -> StudyReport:
 
 
 def _blocks(found: Fits) -> Iterator[str | Block]:
+    from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.document.parts import Table
     from xlmc.outputs.summary import share_text
 
@@ -232,7 +236,9 @@ def _blocks(found: Fits) -> Iterator[str | Block]:
         if each.fitting is None or each.best is None:
             continue
         near = [f.name for f in each.fitting.fits[1:] if f.aic - each.best.aic < 2.0]
-        rows.append((each.name, str(each.fitting.n), each.best.name, _parameters(each, each.best), ", ".join(near)))
+        rows.append(
+            (each.name, count_text(each.fitting.n), each.best.name, _parameters(each, each.best), ", ".join(near))
+        )
     if rows:
         heads = ("Column", "Values", "Distribution", "Parameters", "About as good")
         yield Table("The best distribution of each column", heads, tuple(rows), (1,))
@@ -264,16 +270,17 @@ def _parameters(each: ColumnFit, best: Fitted) -> str:
 
 
 def _pairs(found: Fits) -> Table:
+    from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text
     from xlmc.outputs.document.parts import Table
 
     rows = []
     for pair in found.pairs:
         best, *_ = pair.copulas
         gaussian = next((each for each in pair.copulas if each.name == "Gaussian"), None)
-        behind = "" if gaussian is None else f"{gaussian.aic - best.aic:.1f}"
-        numbers = ", ".join(f"{name} {value:.3g}" for name, value in best.parameters.items())
+        behind = "" if gaussian is None else fixed_text(gaussian.aic - best.aic, 1)
+        numbers = ", ".join(f"{name} {number_text(value, 3)}" for name, value in best.parameters.items())
         name = f"{best.name}, turned" if best.turned else best.name
-        rows.append((pair.first, pair.second, str(pair.n), repr(pair.correlation), name, numbers, behind))
+        rows.append((pair.first, pair.second, count_text(pair.n), repr(pair.correlation), name, numbers, behind))
     heads = ("First", "Second", "Rows", "Rank correlation", "Best copula", "Its numbers", "ΔAIC of Gaussian")
     return Table("How the columns hang together", heads, tuple(rows), (2, 3, 6))
 

@@ -38,21 +38,20 @@ def verify(
     as_json: bool,
     functions: OwnFunctions | None,
 ) -> None:
-    """Recompute the formulas of BOOK at the base case and compare with the values that Excel saved."""
+    """Recompute the formulas of BOOK at the base case and compare with the values that are saved in it."""
     from xlmc.analysis.studies.verify import Status
     from xlmc.analysis.studies.verify import verify as check
     from xlmc.cli.printing import use_number_style
     from xlmc.engine.engines import ENGINES
     from xlmc.excel.workbook.reader import read_workbook
-    from xlmc.montecarlo.definitions.definitions_reader import read_definitions
+    from xlmc.montecarlo.definitions.definitions_reader import number_style_of, read_definitions
     from xlmc.montecarlo.model.labels import calculate_labels
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import Files, StudyReport
 
     workbook = read_workbook(book, functions=functions)
+    use_number_style(number_style_of(workbook))
     definitions = None if everything else read_definitions(calculate_labels(workbook), ENGINES)
-    if definitions is not None:
-        use_number_style(definitions.settings.number_style)
     if definitions is not None and not definitions.forecasts and not definitions.filters:
         raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")
     files = Files((*output, *also), [book], overwrite=overwrite, functions=functions)
@@ -60,13 +59,13 @@ def verify(
     found = check(workbook, definitions)
     cells = "every formula cell" if everything else "the formula cells that forecasts and filters need"
     report = StudyReport(
-        "Recomputed values beside those that Excel saved",
+        "Recomputed values beside those that are saved",
         f"{book.name}: {cells}",
-        blocks_of(_blocks(found, _WRITTEN)),
+        blocks_of(_blocks(found, workbook.saved_by, _WRITTEN)),
         "Verification",
         partial(_as_json, found),
     )
-    written = give_out(report, files.writers(report), as_json, _blocks(found, _SHOWN))
+    written = give_out(report, files.writers(report), as_json, _blocks(found, workbook.saved_by, _SHOWN))
     written.check()
     if found.count(Status.DIFFERING):
         raise click.exceptions.Exit(DIFFERS)
@@ -93,8 +92,8 @@ def _entry(cell: CellCheck) -> dict[str, object]:
     return {key: value for key, value in entry.items() if value not in (None, "")}
 
 
-def _blocks(found: Verification, most: int) -> list[str | Block]:
-    """Return what was found, with `most` differing cells."""
+def _blocks(found: Verification, saved_by: str, most: int) -> list[str | Block]:
+    """Return what was found, with `most` differing cells; `saved_by` is the program that saved their values."""
     from xlmc.analysis.studies.verify import Status, groups
     from xlmc.montecarlo.statistics.number_text import count_text
     from xlmc.outputs.document.parts import Table
@@ -106,10 +105,17 @@ def _blocks(found: Verification, most: int) -> list[str | Block]:
     differing = found.of(Status.DIFFERING)
     if differing:
         rows = tuple(
-            (str(c.cell), c.formula, str(plain(c.expected)), str(plain(c.got)), _percent(c.difference))
+            (str(c.cell), c.formula, _written(c.expected), _written(c.got), _percent(c.difference))
             for c in differing[:most]
         )
-        blocks.append(Table("Differing", ("Cell", "Formula", "Excel saved", "xlmc", "Relative"), rows, (4,)))
+        blocks.append(
+            Table(
+                "Differing",
+                ("Cell", "Formula", f"{saved_by} saved" if saved_by else "Saved", "xlmc", "Relative"),
+                rows,
+                (4,),
+            )
+        )
     if len(differing) > most:
         blocks.append(f"… and {count_text(len(differing) - most)} more; --json lists them all.")
     volatile = [cell for cell in found.of(Status.VOLATILE) if cell.reason]
@@ -119,6 +125,14 @@ def _blocks(found: Verification, most: int) -> list[str | Block]:
             more = f" and {count_text(len(cells) - 5)} more" if len(cells) > 5 else ""
             blocks.append(f"{status.value}: {reason} ({where}{more})")
     return blocks
+
+
+def _written(value: object) -> str:
+    """Write a value with all digits that it has, which may differ in the last ones."""
+    from xlmc.montecarlo.statistics.number_text import whole_text
+
+    found = plain(value)
+    return whole_text(found) if isinstance(found, float) else str(found)
 
 
 def _percent(difference: float | None) -> str:

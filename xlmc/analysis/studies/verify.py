@@ -22,6 +22,7 @@ from xlmc.excel.workbook.workbook import CellValue, Workbook
 from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.in_cells.calls import holds_call
 from xlmc.montecarlo.model.needed import targets_of
+from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["TOLERANCE", "CellCheck", "Status", "Verification", "verify"]
 
@@ -71,8 +72,10 @@ class Verification:
     cells: tuple[CellCheck, ...]
 
     def __repr__(self) -> str:
-        counts = ", ".join(f"{self.count(status):,} {status.value}" for status in Status if self.count(status))
-        return f"{len(self.cells):,} formula cells: {counts or 'nothing to check'}"
+        counts = ", ".join(
+            f"{count_text(self.count(status))} {status.value}" for status in Status if self.count(status)
+        )
+        return f"{count_text(len(self.cells))} formula cells: {counts or 'nothing to check'}"
 
     def count(self, status: Status) -> int:
         """How many cells have that status."""

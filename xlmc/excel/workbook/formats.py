@@ -18,12 +18,14 @@ class OtherFormat:
         noun: with its article and its ending, for messages.
         ending: of its files.
         saved: who saved the values of formulas, "what Excel saved".
+        program: that saved them; empty where several write such files.
         hint: what to do where LibreOffice cannot help.
     """
 
     noun: str
     ending: str
     saved: str
+    program: str
     hint: str
 
     @property
@@ -36,6 +38,7 @@ XLS: Final = OtherFormat(
     "an old Excel workbook (.xls)",
     ".xls",
     "what Excel saved",
+    "Excel",
     "Open it in Excel and save it as an Excel Workbook (.xlsx); if it was made with Crystal Ball, load Crystal Ball "
     "first, or its definitions are lost",
 )
@@ -43,12 +46,14 @@ XLSB: Final = OtherFormat(
     "a binary Excel workbook (.xlsb)",
     ".xlsb",
     "what Excel saved",
+    "Excel",
     "Open it in Excel and save it as an Excel Workbook (.xlsx)",
 )
 ODS: Final = OtherFormat(
     "an OpenDocument spreadsheet (.ods)",
     ".ods",
     "the values saved in it",
+    "",
     "Open it in LibreOffice or Excel and save it as an Excel Workbook (.xlsx)",
 )
 FORMATS: Final = (XLS, XLSB, ODS)

@@ -14,7 +14,7 @@ from xlmc.errors import Notice, WorkbookError
 from xlmc.excel.address import column_number
 from xlmc.excel.workbook.formats import other_format
 from xlmc.excel.workbook.lazy_sheets import LazySheets, naming_file
-from xlmc.excel.workbook.other_formats.mark import other_format_notices
+from xlmc.excel.workbook.other_formats.mark import converted_from, other_format_notices
 from xlmc.excel.workbook.package import (
     LIMITS,
     SMALLER,
@@ -77,6 +77,7 @@ def _read(data: bytes, name: str, where: str) -> Workbook:
             data_tables=tuple(sheets.data_tables()),
             pivots=pivot_tables(parts, structure.worksheets, structure.date1904),
             date1904=structure.date1904,
+            saved_by=_saved_by(parts),
             libreoffice=b"<Application>LibreOffice" in parts.get("docProps/app.xml", b""),
             macintosh=b"Macintosh" in parts.get("docProps/app.xml", b""),
             iteration=iteration_of(structure.calculation),
@@ -87,6 +88,18 @@ def _read(data: bytes, name: str, where: str) -> Workbook:
             sha256=hashlib.sha256(data).hexdigest(),
             data=data,
         )
+
+
+_APPLICATION: Final = re.compile(rb"<Application>([^<]{1,80})")
+
+
+def _saved_by(parts: Mapping[str, bytes]) -> str:
+    """Return the program that saved a workbook last; of one that LibreOffice converted, the program of its format."""
+    if (form := converted_from(parts)) is not None:
+        return form.program
+    found = _APPLICATION.search(parts.get("docProps/app.xml", b""))
+    name = "" if found is None else label(found[1].decode("utf-8", "replace"))
+    return next((each for each in ("LibreOffice", "Excel") if each in name), name.partition("/")[0])
 
 
 def _parts(data: bytes) -> dict[str, bytes]:

@@ -268,6 +268,7 @@ class Workbook:
         data_tables: the what-if tables of all sheets.
         pivots: the pivot tables, where a formula asks for one.
         links: to other workbooks, as formulas write them (`[1]`), with the values that Excel stored.
+        saved_by: the program that saved it last, `Excel`; empty where the file does not say.
         libreoffice: last saved by LibreOffice, which saves TRUE and FALSE as 1 and 0.
         macintosh: last saved by Excel for the Macintosh, whose CHAR and CODE use its own character set.
         iteration: how cells that need each other in a circle are computed; None if they are an error.
@@ -288,6 +289,7 @@ class Workbook:
     pivots: tuple[PivotTable, ...] = ()
     links: Mapping[str, LinkedBook] = field(default_factory=dict)
     date1904: bool = False
+    saved_by: str = ""
     libreoffice: bool = False
     macintosh: bool = False
     iteration: Iteration | None = None

@@ -59,7 +59,7 @@ from xlmc.montecarlo.definitions.unavailable import (
 from xlmc.montecarlo.definitions.xlrisk_sheet import read_xlrisk
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 
-__all__ = ["COMPUTED_BY", "NO_SWITCHES", "read_definitions"]
+__all__ = ["COMPUTED_BY", "NO_SWITCHES", "number_style_of", "read_definitions"]
 
 NO_SWITCHES: Final[Mapping[str, bool]] = MappingProxyType({})
 
@@ -68,6 +68,13 @@ SAVE_AGAIN: Final = "Open the workbook in Excel with Crystal Ball, and save it a
 
 COMPUTED_BY: Final = "Computed by"
 """The heading of what computes a forecast or a filter that no formula computes."""
+
+
+def number_style_of(workbook: Workbook) -> str:
+    """Return the setting Number style of a workbook of which no more is asked; empty without one."""
+    findings = Findings()
+    settings, _, _ = read_settings(workbook, definition_tables(workbook, findings)["xlmc_settings"], (), findings)
+    return settings.number_style
 
 
 def read_definitions(

@@ -24,6 +24,7 @@ from xlmc.montecarlo.distributions.quadrature import gauss_legendre
 from xlmc.montecarlo.distributions.split_mix import GOLDEN, mixed
 from xlmc.montecarlo.distributions.truncated import Slice, Truncated
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = ["Compound", "Part"]
 
@@ -216,7 +217,8 @@ class Compound(Family):
             return Fault("limit", f"Limit ({show(limit)}) must be 0 or more", "Correct the number")
         most = float(self.count.ppf(np.array([1 - 2.0**-53]), counts)[0])
         if not most <= _MOST:
-            message = f"{self.count.name.capitalize()} may be {most:,.0f}, and at most {_MOST:,} amounts are added"
+            counted = f"{self.count.name.capitalize()} may be {number_text(most)}"
+            message = f"{counted}, and at most {count_text(_MOST)} amounts are added"
             hint = "Draw the sum of so many amounts from a normal distribution"
             return Fault(self.count.parameters[0].key, message, hint)
         return None

@@ -26,7 +26,7 @@ from xlmc.montecarlo.statistics import (
     rank_correlation,
 )
 from xlmc.montecarlo.statistics.estimate import finite
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text
 from xlmc.outputs.document.content.answers import opening_sentences
 from xlmc.outputs.document.content.scenarios import scenario_blocks
 from xlmc.outputs.document.element import EMPTY, Html, element, join
@@ -387,7 +387,7 @@ def _quadrants(
     (right_of, first_said), (over, second_said) = _limit(simulation, names[0], x), _limit(simulation, names[1], y)
     right, upper = x > right_of, y > over
     counts = (right & upper, right & ~upper, upper & ~right, ~(right | upper))
-    both, first, second, neither = (f"{100.0 * np.count_nonzero(each) / x.size:.1f} %" for each in counts)
+    both, first, second, neither = (f"{fixed_text(100.0 * np.count_nonzero(each) / x.size, 1)} %" for each in counts)
     of = "the trials" if looked >= simulation.accepted else f"the first {count_text(looked)} accepted trials"
     return (
         f"Above {first_said} and above {second_said}: {both} of {of}; only the first {first}, "

@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
+from xlmc.montecarlo.statistics.number_text import count_text
+
 if TYPE_CHECKING:
     from xlmc.analysis.studies.seek import Found
     from xlmc.montecarlo.definitions.forms import Form
@@ -40,7 +42,7 @@ def _blocks(found: Found) -> Iterator[str | Block]:
     elif found.values.size == 1:
         yield f"{found.cell} is {to} where {found.by} is {_solved(by, found.values[0])}."
     elif found.values.size > 2 * len(found.throughout):
-        many = f"{found.values.size} values of {found.by} {span}"
+        many = f"{count_text(found.values.size)} values of {found.by} {span}"
         yield f"{many} make {found.cell} equal to {to}."
     base = [] if found.base is None else [("In the workbook", found.base, found.base_answer)]
     solved = zip(found.values.tolist(), found.answers.tolist(), strict=True)

@@ -119,12 +119,9 @@ def rest_sentences(simulation: RunResult) -> list[str]:
     if not counts:
         return []
     most = max(counts, key=lambda count: len(counts[count]))
-    if len(counts) > 1 and len(counts[most]) == 1:
-        return [
-            f"Statistics of {names[0]!r} rest on {count_text(count)} of {of} trials" for count, names in counts.items()
-        ]
+    first = f" of {counts[most][0]!r}" if len(counts) > 1 and len(counts[most]) == 1 else ""
     others = [f"those of {_listed(names)} on {count_text(count)}" for count, names in counts.items() if count != most]
-    return ["; ".join([f"Statistics rest on {count_text(most)} of {of} trials", *others])]
+    return ["; ".join([f"Statistics{first} rest on {count_text(most)} of {of} trials", *others])]
 
 
 def _listed(names: list[str]) -> str:

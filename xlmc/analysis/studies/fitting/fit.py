@@ -19,7 +19,7 @@ from xlmc.analysis.studies.fitting.skewed_forms import SKEWED_FORMS
 from xlmc.analysis.studies.fitting.solved_forms import SOLVED_FORMS, TRIANGULAR
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.distributions import FAMILIES
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = [
     "CRITERIA",
@@ -114,10 +114,10 @@ class Fitting:
     cautions: tuple[str, ...]
 
     def __repr__(self) -> str:
-        lines = [f"{self.n:,} values as {self.kind}, the best by {self.by.upper()} first:"]
+        lines = [f"{count_text(self.n)} values as {self.kind}, the best by {self.by.upper()} first:"]
         for each in self.fits[:5]:
-            numbers = ", ".join(f"{heading} {value:.6g}" for heading, value in each.parameters.items())
-            lines.append(f"  {each.name}: {numbers}; {self.by.upper()} {getattr(each, self.by):.6g}")
+            numbers = ", ".join(f"{heading} {number_text(value)}" for heading, value in each.parameters.items())
+            lines.append(f"  {each.name}: {numbers}; {self.by.upper()} {number_text(getattr(each, self.by))}")
         return "\n".join([*lines, *self.cautions])
 
 
@@ -175,7 +175,7 @@ def _refuse_hopeless(x: Floats) -> None:
         )
     if x[0] == x[-1]:
         hint = "Equal measurements say nothing of the spread: choose Low and High from what the measurement resolves"
-        raise SimulationError(f"all {x.size} values are equal", hint=hint)
+        raise SimulationError(f"all {count_text(x.size)} values are equal", hint=hint)
 
 
 def _estimates(kind: str, x: Floats) -> tuple[list[tuple[Candidate, Params, float]], dict[str, str]]:

@@ -12,6 +12,7 @@ from typing import Final
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.statistics.number_text import styled_text
 
 __all__ = [
     "PERCENTS",
@@ -267,7 +268,9 @@ class Sensitivities:
     def __repr__(self) -> str:
         lines = []
         for each in self.forecasts:
-            shares = "; ".join(f"{one.assumption} {one.explained.value:.1%}" for one in each.influences[:5])
+            shares = "; ".join(
+                f"{one.assumption} {styled_text(one.explained.value, '.1%')}" for one in each.influences[:5]
+            )
             lines.append(f"{each.forecast}: {shares or 'no assumption moves it'}")
         return "\n".join(["Variance explained, the largest first", *lines])
 

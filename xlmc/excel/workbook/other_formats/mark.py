@@ -8,7 +8,7 @@ from typing import Final
 
 from xlmc.excel.workbook.formats import FORMATS, OtherFormat
 
-__all__ = ["other_format_notices", "with_mark"]
+__all__ = ["converted_from", "other_format_notices", "with_mark"]
 
 _PROPERTIES: Final = "docProps/core.xml"
 """The part that holds the mark, as a comment. xlmc keeps it; a program that saves the workbook drops the mark."""
@@ -31,12 +31,19 @@ def with_mark(parts: Mapping[str, bytes], form: OtherFormat, macros: bool) -> di
     return {**parts, _PROPERTIES: parts[_PROPERTIES] + mark.encode()}
 
 
+def converted_from(parts: Mapping[str, bytes]) -> OtherFormat | None:
+    """Return the format from which LibreOffice converted a workbook; otherwise None."""
+    found = _MARK.search(parts.get(_PROPERTIES, b""))
+    return next(each for each in FORMATS if each.noun == found["what"].decode()) if found else None
+
+
 def other_format_notices(parts: Mapping[str, bytes]) -> Iterator[str]:
     """Return the notices about a workbook that LibreOffice converted, also of one with results in it."""
     found = _MARK.search(parts.get(_PROPERTIES, b""))
     if found is not None:
         by = found["by"].decode().replace("/", " ")
-        form = next(each for each in FORMATS if each.noun == found["what"].decode())
+        form = converted_from(parts)
+        assert form is not None
         yield f"the cells were converted from {form.noun} by {by}; xlmc verify compares the formulas with {form.saved}"
         if found["macros"]:
             yield f"the macros of {form.name} are left out of what xlmc writes"

@@ -37,8 +37,7 @@ _CELL: Final = f"padding:.15em .7em;text-align:{{}};border-bottom:1px solid {_LI
 def _base_text(model: CompiledModel, assumption: Assumption) -> str:
     if assumption.base is None:
         return ""
-    dated = model.dated.get(assumption.name)
-    return (dated or PLAIN).number(assumption.base)
+    return model.input_forms.get(assumption.name, PLAIN).number(assumption.base)
 
 
 @in_style_of("definitions.settings.number_style")

@@ -269,7 +269,7 @@ def _before_after(axes: Axes, simulation: RunResult, name: str | None) -> None:
     axes.set_ylabel("Density")
     axes.legend(loc="best", fontsize=8, frameon=False)
     _plain(axes, units or "value")
-    _write_form(axes.xaxis, simulation.model.dated.get(chosen, PLAIN))
+    _write_form(axes.xaxis, simulation.model.input_forms.get(chosen, PLAIN))
 
 
 def _moved(simulation: RunResult, name: str) -> float:

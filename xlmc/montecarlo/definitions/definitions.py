@@ -15,6 +15,7 @@ from xlmc.excel.formula.ir import Expression
 from xlmc.excel.workbook.workbook import CellValue
 from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.feeds import Feeding
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.run_settings import USUAL, Settings
 from xlmc.montecarlo.definitions.scenarios import Scenario
 from xlmc.montecarlo.definitions.stating import Kind, Role, Which
@@ -58,14 +59,16 @@ class StatedNumber:
     Attributes:
         value: at the base case; None where it is not known.
         source: the formula, or its cell.
+        form: how the number is written.
     """
 
     value: float | None
     source: str
+    form: Form = PLAIN
 
     def __str__(self) -> str:
         """Write the number with its source."""
-        return self.source if self.value is None else f"{exact_text(self.value)} ({self.source})"
+        return self.source if self.value is None else f"{self.form.number(self.value)} ({self.source})"
 
 
 @dataclass(frozen=True, slots=True)

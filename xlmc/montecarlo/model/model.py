@@ -411,11 +411,11 @@ class CompiledModel:
         return {f.name: code for f, code in zip(self.forecasts, formats_of(self.workbook, hosts), strict=True)}
 
     @cached_property
-    def dated(self) -> dict[str, Form]:
-        """The form of each assumption whose cell shows dates or times, by name."""
+    def input_forms(self) -> dict[str, Form]:
+        """The form of each assumption whose cell shows dates or times, percentages or amounts of money, by name."""
         hosts = [host_of(each.cell) for each in self.assumptions]
         forms = zip(self.assumptions, forms_of(self.workbook, hosts), strict=True)
-        return {each.name: form for each, form in forms if form.kind is stating.Kind.DATE}
+        return {each.name: form for each, form in forms if form.kind is not stating.Kind.NUMBER}
 
     def check_program(self) -> Program:
         """Make the cells of the checks filters, a function of the live assumptions; others stand at their

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Final, TypeGuard
+from typing import Final
 
 from xlmc.excel.address import Cell, host_of
 from xlmc.excel.workbook.workbook import Workbook
-from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter, Parameter, StatedNumber
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, StatedNumber
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.cell_forms import forms_of
 
@@ -19,6 +20,10 @@ _LONGEST: Final = 40
 
 _FIRST_DATE: Final = 10_000.0
 """Days: from 1927 on. A smaller number in the row of a date is a span, such as its standard deviation."""
+
+_ENDS: Final = {"low", "high", "likeliest", "low_likeliest", "high_likeliest", "top", "bottom", "midpoint", *CUTOFFS}
+_OF_QUANTITY: Final = frozenset({*_ENDS, "mean", "std_dev", "location", "scale", "deductible", "limit"})
+"""Parameters that are in the unit of what is drawn; others, such as shapes and rates, are not."""
 
 Values = Callable[[Sequence[Cell]], Mapping[Cell, float]]
 
@@ -34,7 +39,7 @@ def with_stated_formulas(
         definitions: the same, with numbers where no assumption may vary them.
         values: computes cells at the base case, those that can be.
     """
-    definitions = _with_dates(workbook, definitions)
+    definitions = _in_their_forms(workbook, definitions)
     limits = (*definitions.filters, *definitions.forecast_filters)
     asked: list[Assumption | Filter] = [*definitions.assumptions, *limits, *given.assumptions]
     if not any(each.formulas for each in asked):
@@ -70,32 +75,40 @@ def _assumption(
     workbook: Workbook, assumption: Assumption, read: Mapping[str, Cell], known: Mapping[Cell, float]
 ) -> Assumption:
     stated = {}
-    for key, cell in {**read, **assumption.formulas}.items():
+    computed = {**read, **assumption.formulas}
+    (form,) = forms_of(workbook, [host_of(assumption.cell)]) if computed else (PLAIN,)
+    for key, cell in computed.items():
         number = assumption.given.get(key)
         value = known.get(cell) if isinstance(number, Cell) or number is None else number
-        stated[key] = _stated(workbook, cell, value)
+        own = value is not None and form.kind is not Kind.NUMBER and _is_of_quantity(key, value, form)
+        stated[key] = _stated(workbook, cell, value, form if own else PLAIN)
     return replace(assumption, stated={**assumption.stated, **stated}) if stated else assumption
 
 
-def _with_dates(workbook: Workbook, definitions: Definitions) -> Definitions:
-    """Return the definitions with the dates of assumptions whose cells show dates."""
-    asked = [each for each in definitions.assumptions if any(map(_may_be_a_date, each.given.values()))]
-    forms = zip(asked, forms_of(workbook, [host_of(each.cell) for each in asked]), strict=True) if asked else ()
-    dated = {
-        each.name: {
-            key: StatedNumber(None, form.number(value)) for key, value in each.given.items() if _may_be_a_date(value)
-        }
-        for each, form in forms
-        if form.kind is Kind.DATE
-    }
-    if not dated:
+def _in_their_forms(workbook: Workbook, definitions: Definitions) -> Definitions:
+    """Return the definitions with the numbers of assumptions whose cells show dates, percentages or money as such."""
+    asked = definitions.assumptions
+    forms = zip(asked, forms_of(workbook, [host_of(each.cell) for each in asked]), strict=True)
+    written = {each.name: _written(each, form) for each, form in forms if form.kind is not Kind.NUMBER}
+    if not written:
         return definitions
-    assumptions = (replace(each, stated=dated.get(each.name, each.stated)) for each in definitions.assumptions)
-    return replace(definitions, assumptions=tuple(assumptions))
+    return replace(definitions, assumptions=tuple(replace(a, stated=written.get(a.name, a.stated)) for a in asked))
 
 
-def _may_be_a_date(value: Parameter) -> TypeGuard[float]:
-    return isinstance(value, int | float) and value >= _FIRST_DATE
+def _written(assumption: Assumption, form: Form) -> dict[str, StatedNumber]:
+    """Return the numbers of an assumption that are values of its quantity, in the form of its cell."""
+    return {
+        key: StatedNumber(None, form.number(value))
+        for key, value in assumption.given.items()
+        if not isinstance(value, Cell) and _is_of_quantity(key, value, form)
+    }
+
+
+def _is_of_quantity(key: str, value: float, form: Form) -> bool:
+    """Whether a number is a value of the quantity itself, or a distance of such; of dates a value alone."""
+    if form.kind is Kind.DATE:
+        return value >= _FIRST_DATE
+    return key in _OF_QUANTITY or (key[:1] == "p" and key[1:2].isdigit())
 
 
 def _filter(workbook: Workbook, filter_: Filter, known: Mapping[Cell, float]) -> Filter:
@@ -103,8 +116,8 @@ def _filter(workbook: Workbook, filter_: Filter, known: Mapping[Cell, float]) ->
     return replace(filter_, stated=stated) if stated else filter_
 
 
-def _stated(workbook: Workbook, cell: Cell, value: float | None) -> StatedNumber:
+def _stated(workbook: Workbook, cell: Cell, value: float | None, form: Form = PLAIN) -> StatedNumber:
     formula = workbook.content(cell).formula
     text = "" if formula is None else f"={formula.text}"
     whole = text if "!" in text or "[" in text else f"{cell}: {text}"
-    return StatedNumber(value, whole if 0 < len(text) <= _LONGEST else str(cell))
+    return StatedNumber(value, whole if 0 < len(text) <= _LONGEST else str(cell), form)

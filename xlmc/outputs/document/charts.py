@@ -26,7 +26,7 @@ def shape_chart(simulation: RunResult, name: str) -> Chart | None:
     if found is None:
         return None
     edges, before, accepted = (tuple(map(float, each)) for each in (found.edges, found.before, found.accepted))
-    shape = Shape(edges, before, accepted, simulation.model.dated.get(name, PLAIN))
+    shape = Shape(edges, before, accepted, simulation.model.input_forms.get(name, PLAIN))
     return Chart("", "", shape, f"{name}: before filtering pale, accepted as a line", 28.0)
 
 

@@ -211,11 +211,11 @@ def _assumption_row(simulation: RunResult, each: Assumption) -> list[Content]:
     name = f"{each.name}, {each.units}" if each.units else each.name
     words = f"{distribution_text(each)}. {each.source}".strip()
     found = filter_effect_of(simulation, each.name)
+    form = simulation.model.input_forms.get(each.name, PLAIN)
     if found is None:
-        base = "" if each.base is None else number_text(each.base, 9)
+        base = "" if each.base is None else form.number(each.base)
         return [name, words, f"{status(simulation.model, each.name, each.frozen)}: {base}", _NONE, _NONE]
     both = (found.prior, found.accepted) if simulation.filters_act else (found.prior,)
-    form = simulation.model.dated.get(each.name, PLAIN)
     shape = shape_chart(simulation, each.name)
     return [
         name,

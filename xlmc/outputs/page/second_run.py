@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.statements.in_words import distribution_text, limits_text, status
+from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import count_text, exact_text, number_text
+from xlmc.montecarlo.statistics.number_text import count_text, exact_text
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import estimate_html, share_html
 from xlmc.outputs.summary import SummaryRow, percent, summarise
@@ -115,7 +116,8 @@ def _given_to(run: RunResult) -> _Given:
     model = run.model
     found = {("Run", what): (what, said) for what, said in _settings(run)}
     for a in model.assumptions:
-        words = f"held at {number_text(a.base)}" if a.frozen and a.base is not None else distribution_text(a)
+        form = model.input_forms.get(a.name, PLAIN)
+        words = f"held at {form.number(a.base)}" if a.frozen and a.base is not None else distribution_text(a)
         unused = "" if status(model, a.name, a.frozen) in ("drawn", "frozen") else ", not needed"
         found["Assumption", name_key(a.name)] = a.name, words + unused
     return found | {("Filter", name_key(f.name)): (f.name, limits_text(f)) for f in model.filters}

@@ -156,7 +156,7 @@ def _remarks(simulation: RunResult) -> Iterator[str]:
 def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
     """Return an assumption's name above two rows, in a table body of their own so that they stay together."""
     found = filter_effect_of(simulation, assumption.name)
-    form = simulation.model.dated.get(assumption.name, PLAIN)
+    form = simulation.model.input_forms.get(assumption.name, PLAIN)
     shape = EMPTY if found is None else _shape(simulation, assumption.name)
     named = element("tr", element("th", shape, *_name_line(assumption, form), scope="rowgroup", colspan=str(_COLUMNS)))
     if found is None:

@@ -184,7 +184,7 @@ def _write_assumption(page: Page, simulation: RunResult, assumption: Assumption)
     before, accepted, change = _statistics(simulation, assumption)
     starts = [0, *range(_NAMED - 1, _NAMED + len(before))]
     name = f"{assumption.name} ({assumption.units})" if assumption.units else assumption.name
-    form = simulation.model.dated.get(assumption.name, PLAIN)
+    form = simulation.model.input_forms.get(assumption.name, PLAIN)
     base = Shown(cells.NONE) if assumption.base is None else cells.exact(assumption.base, form=form)
     page.line([Shown(name, look="name"), base, *before], starts)
     words = Shown(distribution_text(assumption), look="second")
@@ -194,7 +194,10 @@ def _write_assumption(page: Page, simulation: RunResult, assumption: Assumption)
 
 def _statistics(simulation: RunResult, assumption: Assumption) -> tuple[list[Shown], list[Shown], list[Shown]]:
     """Return the cells of the draws before filtering, of the accepted ones and of the change; or why there are none."""
-    found, form = filter_effect_of(simulation, assumption.name), simulation.model.dated.get(assumption.name, PLAIN)
+    found, form = (
+        filter_effect_of(simulation, assumption.name),
+        simulation.model.input_forms.get(assumption.name, PLAIN),
+    )
     if found is None:
         why = Shown(status(simulation.model, assumption.name, assumption.frozen))
         return [why, *_blank(_STATISTICS + 1)], _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)

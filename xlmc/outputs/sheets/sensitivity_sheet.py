@@ -362,13 +362,13 @@ def write_moves(page: Page, found: ForecastSensitivity) -> TableAt:
 
 
 def _move_row(bar: Bar, base: float, changed: str) -> list[Shown]:
-    digits = cells.spread_format(bar.inputs[-1] - bar.inputs[0])
+    digits = cells.spread_format(bar.inputs[-1] - bar.inputs[0], bar.form)
     changes = [None if answer is None else answer - base for answer in bar.answers]
     rises = "–" if bar.monotonic is None else "yes" if bar.monotonic else "no"
     return [
         Shown(bar.assumption, look="name"),
         Shown(bar.units),
-        *(Shown(value, digits) for value in (bar.base, bar.inputs[0], bar.inputs[-1])),
+        *(Shown(value, digits, date1904=bar.form.date1904) for value in (bar.base, bar.inputs[0], bar.inputs[-1])),
         *(Shown(change, changed) for change in changes),
         Shown(rises, look="moved" if bar.monotonic is False else "number"),
         Shown(f"{sum(bar.rejected)} of {len(bar.rejected)}", look="number"),

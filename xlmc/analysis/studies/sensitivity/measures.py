@@ -93,6 +93,7 @@ class Bar:
         rejected: `(5,)` whether the filters would reject that case.
         monotonic: whether the forecast only rises or only falls over `inputs`; None if a value is missing. Where it
             is False, a bar from the first to the last value hides what lies between.
+        form: how numbers of the assumption are written.
     """
 
     assumption: str
@@ -102,6 +103,7 @@ class Bar:
     answers: tuple[float | None, ...]
     rejected: tuple[bool, ...]
     monotonic: bool | None
+    form: Form = PLAIN
 
     @property
     def low(self) -> float | None:

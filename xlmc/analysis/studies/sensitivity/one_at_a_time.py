@@ -9,13 +9,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.sensitivity.measures import PERCENTS, Bar
+from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.statistics.estimate import finite
 
@@ -79,7 +80,7 @@ def one_at_a_time(
             for index in chosen
             for name in [assumptions[index]]
         ]
-        bars.append(tuple(made))
+        bars.append(tuple(replace(bar, form=model.input_forms.get(bar.assumption, PLAIN)) for bar in made))
     return OneAtATime(
         base=tuple(finite(each[0]) for each in answers),
         bars=tuple(bars),

@@ -115,4 +115,4 @@ def test_what_is_the_same_in_every_trial_is_sure_and_ties_are_told(xlmc, tmp_pat
     assert "Whatever order and colour are, these stay as they are: fee." in words
     assert "cannot tell" not in words
     one = " ".join(xlmc("decide", path, "-n", "2000", "--quiet", "--table", "order").out.split())
-    assert "that is 6,006 ± 0 above the next, order = 20." in one
+    assert "that is 6,006 above the next, order = 20." in one

@@ -13,7 +13,7 @@ import click
 
 from xlmc.cli.options import FilePath, functions_option, number_style_option
 from xlmc.cli.terminal import paragraph, plain, put, say, say_json
-from xlmc.errors import capitalised
+from xlmc.errors import ErrorCode, capitalised
 
 if TYPE_CHECKING:
     from xlmc.engine.calculation import Calculation
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from xlmc.excel.own_functions import OwnFunctions
     from xlmc.excel.workbook.typed_values import ValueRows
     from xlmc.excel.workbook.workbook import CellValue, Workbook
+    from xlmc.montecarlo.definitions.forms import Form
 
 __all__ = ["calculate"]
 
@@ -72,16 +73,19 @@ def calculate(
     A saved value that is right stays to the last digit, and so does everything else in the file. What cannot be
     computed is named, and keeps the value that Excel saved, unless it depends on a change.
     """
+    from xlmc.cli.printing import use_number_style
     from xlmc.engine.calculation import Calculator
     from xlmc.excel.workbook.reader import read_workbook
     from xlmc.excel.workbook.target import copy_ending
     from xlmc.excel.workbook.typed_values import read_value_rows, typed_change
+    from xlmc.montecarlo.definitions.definitions_reader import number_style_of
 
     if as_json and as_csv:
         raise click.UsageError("--json and --csv cannot both be given.")
     if (as_json or as_csv) and not cells:
         raise click.UsageError("which cells are to be printed? Name them: --cells Results!B2:B9")
     workbook = read_workbook(book, functions=functions)
+    use_number_style(number_style_of(workbook))
     wanted = _wanted(workbook, cells)
     typed = _typed(typed_change(workbook, each) for each in changes)
     table = None if values is None else read_value_rows(values, workbook)
@@ -128,6 +132,19 @@ class _Answers:
             return
         for number, given in enumerate(self.table.given):
             yield [*given.values(), *(self.value(cell, number) for cell in self.wanted)]
+
+    def shown(self) -> list[list[str]]:
+        """Return the lines as people read them: numbers as the formats of their cells say."""
+        from xlmc.montecarlo.definitions.forms import PLAIN
+        from xlmc.montecarlo.model.cell_forms import forms_of
+
+        forms = forms_of(self.book, self.wanted)
+        if self.table is None or not self.table.headings:
+            return [
+                [str(cell), _shown(self.value(cell, 0), form)] for cell, form in zip(self.wanted, forms, strict=True)
+            ]
+        given = [PLAIN] * len(self.table.headings)
+        return [[_shown(*each) for each in zip(line, [*given, *forms], strict=True)] for line in self.lines()]
 
     def headings(self) -> list[str]:
         """Return the headings of these lines."""
@@ -232,7 +249,6 @@ def _write(path: Path, answers: _Answers, read: Sequence[Path], overwrite: bool)
 
 def _print(answers: _Answers, *, as_json: bool, as_csv: bool) -> None:
     from xlmc.cli.printing import table
-    from xlmc.montecarlo.definitions.tables.table_rows import as_text
 
     if as_json:
         say_json(answers.as_json())
@@ -240,8 +256,18 @@ def _print(answers: _Answers, *, as_json: bool, as_csv: bool) -> None:
         put(answers.as_csv())
     elif answers.wanted:
         headings = answers.headings()
-        rows = [[as_text(value) for value in line] for line in answers.lines()]
-        table(f"{answers.book.name}: values of cells", headings, rows, right=tuple(range(1, len(headings))))
+        table(f"{answers.book.name}: values of cells", headings, answers.shown(), right=tuple(range(1, len(headings))))
+
+
+def _shown(value: CellValue, form: Form) -> str:
+    """Write a value as its cell shows it; a number of which the cell does not say what it is with twelve digits."""
+    from xlmc.montecarlo.definitions.stating import Kind
+    from xlmc.montecarlo.definitions.tables.table_rows import as_text
+    from xlmc.montecarlo.statistics.number_text import number_text
+
+    if isinstance(value, bool | ErrorCode) or not isinstance(value, int | float):
+        return as_text(value)
+    return number_text(float(value), 12) if form.kind is Kind.NUMBER else form.number(float(value))
 
 
 def _tell(answers: _Answers, book: Path, outputs: Sequence[Path]) -> None:

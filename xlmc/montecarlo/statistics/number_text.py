@@ -173,8 +173,8 @@ def format_estimate(value: float, error: float | None, decimals: int | None = No
         scaled = format_estimate(value / 10.0**size, error / 10.0**size)
         return f"({scaled})e{size:+03d}"
     decimals = 1 - two_digit_exponent(error) if decimals is None else decimals
-    if decimals + size >= MOST_DIGITS:  # an error below the last bit of the value
-        return _styled(f"{value:.{MOST_DIGITS}g} ± {error:.1e}")
+    if decimals + size >= MOST_DIGITS:  # an error below the last bit of the value, which is rounding
+        return exact_text(value)
     return f"{fixed_text(value, decimals)} ± {fixed_text(error, decimals)}"
 
 

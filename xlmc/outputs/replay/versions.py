@@ -55,6 +55,7 @@ _FEW_VALUES: Final = re.compile(
     r"|Hyper-?geo(?:metric)?|Hypergeo|(?:Discrete|Int|D) ?Uniform|Discrete|Custom|Empirical|Resampled|Resample)(?!\w)",
     re.IGNORECASE,
 )
+_DRAWN: Final = re.compile(r"(?<![\w.])(?:RAND|RANDBETWEEN|RANDARRAY|Risk\w+|CB\.\w+)\(", re.IGNORECASE)
 _CORRELATED: Final = re.compile(r"correlation|RiskCorrmat|Risk(?:In)?DepC|CB\.Correl", re.IGNORECASE)
 
 _TINY: Final = re.compile(r"\dE-[123]\d\d\b|\^-|(?<![\w.])(?:EXP|POWER)\(", re.IGNORECASE)
@@ -245,6 +246,8 @@ RULES: Final = (
     Rule("0.12.0", "pairs of forecasts count a yes/no answer as above its limit where it is a yes", _ANY),
     Rule("0.12.0", "comparisons judge yes/no answers and texts by their shares alone", _ANY),
     Rule("0.12.0", "data tables over a draw keep the values that Excel calculated", _SHOWN),
+    Rule("0.12.0", "draws in cells are called by the label beside them", _DRAWN),
+    Rule("0.12.0", "TRUE and FALSE that no assumption reaches are yes and no, exactly", _ANY),
     Rule("0.12.0", "adjustment weights of matrices of rank correlations are honoured", _calls("RiskCorrmat")),
 )
 """The rules in the order of versions."""

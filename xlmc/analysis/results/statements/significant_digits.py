@@ -262,6 +262,6 @@ def _round(value: float, unit: Decimal | None, rounding: str, significant: int =
 
 def _text(value: Decimal, form: Form) -> str:
     if form.kind is not Kind.DATE and is_far(form.factor * float(value)):
-        return styled_text(value, f".{len(value.as_tuple().digits) - 1}e")
+        return styled_text(float(value), f".{len(value.as_tuple().digits) - 1}e")
     exponent = value.as_tuple().exponent
     return form.tick(float(value), -exponent if isinstance(exponent, int) else 0)

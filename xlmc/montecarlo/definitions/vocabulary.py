@@ -30,6 +30,7 @@ class Vocabulary:
         drawing: what the workbook draws.
         checks: what the checks are called.
         misfits: why a model may not apply, in parentheses after a space; may be empty.
+        balances: whether it matters which of yes and no is more probable.
     """
 
     model_error: str
@@ -40,6 +41,7 @@ class Vocabulary:
     drawing: str
     checks: str
     misfits: str = ""
+    balances: bool = False
 
     def fill(self, text: str) -> str:
         """Return the text with these words in place of their names in braces."""
@@ -55,6 +57,7 @@ CRASH: Final = Vocabulary(
     "scene",
     "physics checks",
     " (second impact, tyre forces, a pulse that was cut off)",
+    balances=True,
 )
 NEUTRAL: Final = Vocabulary("model error", "is right", "case", "a reader", "", "drawing", "checks")
 

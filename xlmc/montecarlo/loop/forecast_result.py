@@ -120,7 +120,7 @@ class ForecastResult:
             return Kind.CATEGORY
         if self.definition.kind is not None:
             return self.definition.kind
-        if self._two_valued:
+        if self._two_valued and (self.sample.yes_no_at_most or not self.sample.n):
             return Kind.YES_NO
         if (shown := kind_of_format(self._code)) is not None:
             return shown

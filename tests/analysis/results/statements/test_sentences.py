@@ -3,6 +3,7 @@ from __future__ import annotations
 import math
 import re
 from collections import Counter
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,10 +18,11 @@ from xlmc.montecarlo.loop.forecast_result import ForecastResult
 class Run:
     """What sentences need of a run: forecasts with `(m,)` values."""
 
-    def __init__(self, values, faults=(), **definition):
+    def __init__(self, values, faults=(), category="rung 1", **definition):
         forecast = Forecast("speed", Cell("S", 1, 1), Cell("S", 1, 1), **definition)
         result = ForecastResult(forecast, lambda: np.asarray(values, float), Counter(faults), two_valued=True)
         self.results = {"speed": result}
+        self.model = SimpleNamespace(workbook=SimpleNamespace(category=category))
 
 
 def sentences(values, **definition):
@@ -151,6 +153,10 @@ def test_a_yes_or_no_is_a_probability(ones, text, kind):
 @pytest.mark.parametrize("kind", [None, Kind.YES_NO])
 def test_a_bound_of_a_yes_or_no_says_one_side_alone(role, ones, text, kind):
     assert sentences([0.0] * (1000 - ones) + [1.0] * ones, kind=kind, role=role) == [f"speed: {text}"]
+
+
+def test_which_of_yes_and_no_is_more_probable_is_told_of_crashes_alone():
+    assert sentences([0.0] * 900 + [1.0] * 100, category="") == ["speed: yes with probability 10.0 % ± 0.9 %"]
 
 
 def test_other_numbers_are_a_yes_and_numbers_stay_numbers_where_the_row_says_so():

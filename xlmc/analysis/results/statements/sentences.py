@@ -81,7 +81,8 @@ def statements(simulation: RunResult) -> list[Statement]:
     """Say of every forecast, but diagnostics, where its central range lies or how probable a yes is, and how probable
     values above its threshold and in the range that was asked for are.
     """
-    return [each for result in simulation.results.values() for each in _of(result)]
+    balances = vocabulary_of(simulation.model.workbook).balances
+    return [each for result in simulation.results.values() for each in _of(result, balances)]
 
 
 def stated_range(result: ForecastResult) -> RoundedRange | None:
@@ -98,26 +99,26 @@ def stated_range(result: ForecastResult) -> RoundedRange | None:
     return rounded_range(result.sample, ends, share, definition.report_to, result.form)
 
 
-def _of(result: ForecastResult) -> list[Statement]:
+def _of(result: ForecastResult, balances: bool) -> list[Statement]:
     definition = result.definition
     if definition.role is Role.DIAGNOSTIC:
         return []
     part = _part_text(result)
-    main = _main(result, part)
+    main = _main(result, part, balances)
     if main is None:
         why = "too few effective trials for its central range" if result.sample.n else "no accepted trial has a number"
         return [Statement(definition.name, "range", f"{definition.name}: {why}")]
     return [main, *(replace(each, text=f"{each.text}{part}") for each in _probabilities(result))]
 
 
-def _main(result: ForecastResult, part: str) -> Statement | None:
+def _main(result: ForecastResult, part: str, balances: bool) -> Statement | None:
     """Return the sentence that answers the question; None if there are too few trials for one."""
     definition, trials = result.definition, result.statistics.trials
     name, units = definition.name, f" {definition.units}" if definition.units else ""
     if result.categories:
         return Statement(name, "probability", f"{name}: {_texts_text(result.categories)}{part}")
     if result.yes is not None:
-        return Statement(name, "probability", f"{name}: {_yes_text(result, result.yes)}{part}")
+        return Statement(name, "probability", f"{name}: {_yes_text(result, result.yes, balances)}{part}")
     found = stated_range(result)
     if found is None:
         return None
@@ -141,10 +142,11 @@ _MOST_TEXTS: Final = 6
 """Texts of one answer whose shares a sentence gives."""
 
 
-def _yes_text(result: ForecastResult, yes: Estimate) -> str:
+def _yes_text(result: ForecastResult, yes: Estimate, balances: bool) -> str:
     """`yes with probability 84.2 % ± 0.4 %, more probable than not`; any number but 0 is a yes, as in Excel.
 
-    That a lower bound is a yes makes the answer one; where it is a no, the answer may be either.
+    Which of yes and no is more probable is told where that `balances`, as in court. That a lower bound is a yes makes
+    the answer one; where it is a no, the answer may be either.
     """
     role = result.definition.role
     says = "" if result.sample.yes_no_at_most else "; numbers other than 0 and 1 count as yes"
@@ -153,9 +155,9 @@ def _yes_text(result: ForecastResult, yes: Estimate) -> str:
     if yes.value in (0.0, 1.0):
         return f"yes in {percent_text(yes)}{says}"
     likelier = ""
-    if role is not Role.UPPER and surely_above(yes, EVEN):
+    if balances and role is not Role.UPPER and surely_above(yes, EVEN):
         likelier = ", more probable than not"
-    elif role is not Role.LOWER and surely_above(complement(yes), EVEN):
+    elif balances and role is not Role.LOWER and surely_above(complement(yes), EVEN):
         likelier = ", so no is more probable than yes"
     return f"yes with {_OF_ROLE.get(role, 'probability')} {percent_text(yes)}{likelier}{says}"
 

@@ -25,6 +25,7 @@ from kinds_book import write_book
 from workbook_files import add_tables
 
 from xlmc.cli import xlmc
+from xlmc.montecarlo.statistics import format_estimate
 
 NUMBER = r"[\d,]+(?:\.\d+)?(?:e[+-]\d+)?"
 WITH_ERROR = re.compile(
@@ -58,7 +59,8 @@ def write_full_book(path, *, filtered):
     sheet = book["Model"]
     sheet["B30"], sheet["B31"] = 30, 5
     sheet["B10"], sheet["B11"] = "=B1^2/10*(1+B30/1000)", "=B2*(1+B1/100)-B30*B31*100"
-    sheet["B6"].number_format = "yyyy-mm-dd"  # an assumption that is a date
+    sheet["B6"].number_format, sheet["B7"].number_format = "yyyy-mm-dd", "0.0%"  # assumptions that are no bare numbers
+    sheet["B2"].number_format = '"$"#,##0'
     for number in range(40):
         sheet.cell(number + 1, 8, round(20 + 5 * math.sin(number * 1.7), 3))
     add_tables(book.create_sheet("More"), {"xlmc_decisions": DECISIONS, "xlmc_scenarios": SCENARIOS})
@@ -85,7 +87,14 @@ COMMANDS = {
     "stress": ["stress", "{filtered}", "-n", "2000"],
     "seek": ["seek", "{filtered}", "--cell", "Model!B11", "--to", "250000", "--by", "Model!B1"],
     "fit": ["fit", "{plain}!Model!H1:H40"],
+    "stability": ["stability", "{filtered}", "-n", "1000"],
+    "optimise": ["optimise", "{filtered}", "--maximise", "mean of Cost", "-n", "1000", "--runs", "5"],
+    "verify": ["verify", "{filtered}"],
+    "report": ["report", "{run}"],
+    "methods": ["methods", "{filtered}", "--reference-trials", "4096", "-n", "1024", "--replicates", "2"],
 }
+WITHOUT_ERRORS = ("seek", "stability", "verify", "optimise")
+"""Commands whose numbers are exact, or a few."""
 ENDINGS = ("html", "pdf", "docx", "xlsx")
 
 
@@ -96,6 +105,10 @@ def printed(tmp_path_factory):
     books = {
         name: write_full_book(folder / f"{name}.xlsx", filtered=name == "filtered") for name in ("plain", "filtered")
     }
+
+    books["run"] = str(folder / "kept.xlsx")
+    kept = CliRunner().invoke(xlmc, ["simulate", books["filtered"], "-n", "2000", "-o", books["run"]])
+    assert kept.exit_code == 0, kept.output
 
     @cache
     def run(command):
@@ -216,7 +229,34 @@ def test_a_number_with_its_error_is_an_estimate_of_the_json(printed, command, ou
         if not np.any(at_value & np.any(at_error, axis=0)):
             lost.append(words)
     assert not lost
-    assert command == "seek" or texts[output].count("±") > 5
+    assert command in WITHOUT_ERRORS or texts[output].count("±") > 5
+
+
+NOISE = re.compile(
+    r"\d(?:\.\d+)?e\+(?:0\d|1[01])\b"  # a power of ten of a number that people write without
+    r"|(?<![\d.e])\d+\.\d{13,}"  # more digits than a number has
+    r"|\de-1[3-9]\b"  # rounding
+)
+
+
+@pytest.mark.parametrize("output", ["terminal", "html", "pdf", "docx"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_no_number_is_noise(printed, command, output):
+    _, texts, _ = printed(command)
+    text = texts[output].partition("SHA-256 of every")[0]
+    found = [text[max(0, each.start() - 40) : each.end() + 20] for each in NOISE.finditer(text)]
+    assert [each for each in found if command != "stability"] == []  # which tells rounding
+
+
+@pytest.mark.parametrize("output", ["terminal", "html", "pdf", "docx"])
+@pytest.mark.parametrize("command", ["simulate", "simulate without filters", "report"])
+def test_both_ends_of_a_range_have_the_same_decimals(printed, command, output):
+    _, texts, _ = printed(command)
+    text = re.sub(r"\s+", " ", texts[output])
+    ranges = re.findall(rf"\bbetween [$]?({NUMBER})(?: EUR| %)? and [$]?({NUMBER})", text)
+    ranges += re.findall(rf"({NUMBER}) ± {NUMBER}(?: EUR| %)? to [$]?({NUMBER}) ± ", text)
+    assert ranges
+    assert [each for each in ranges if len(each[0].partition(".")[2]) != len(each[1].partition(".")[2])] == []
 
 
 def derived(document):
@@ -273,6 +313,36 @@ def test_an_assumption_that_is_a_date_is_told_as_one(printed):
         assert "46,000" not in text
     mean = date(1899, 12, 30) + timedelta(days=int(start["accepted"]["mean"]["value"]))
     assert all(f"{mean} ± " in re.sub(r"\s+", " ", texts[ending]) for ending in ("html", "pdf", "docx"))
+
+
+def test_assumptions_that_are_percentages_and_money_are_told_as_such(printed):
+    document, texts, path = printed("simulate")
+    share = next(each for each in document["assumptions"] if each["name"] == "Share")
+    assert share["parameters"] == "Low 30 %, High 50 %"
+    for text in (*texts.values(), xlmc_check(path.parent / "filtered.xlsx")):
+        assert not re.search(r"Low 0\.3\b", text)
+    mean = share["accepted"]["mean"]
+    told = format_estimate(100.0 * mean["value"], 100.0 * mean["error"])
+    assert all(f"{told} %" in re.sub(r"\s+", " ", texts[ending]) for ending in ("html", "pdf", "docx"))
+    (row,) = [
+        [cell.number_format for cell in row]
+        for row in openpyxl.load_workbook(path)["Sensitivity"].iter_rows()
+        if row[0].value == "Share" and row[2].value == 0.4
+    ][:1]
+    assert "%" in row[2]
+
+
+def test_calculated_cells_are_told_in_their_formats(printed):
+    _, _, path = printed("simulate")
+    book = str(path.parent / "filtered.xlsx")
+    words = ["calculate", book, "--cells", "Model!B10:B21"]
+    found = CliRunner().invoke(xlmc, [*words, "--number-style", "1.234,5"], env={"COLUMNS": "200"})
+    shown = dict(line.split(maxsplit=1) for line in found.output.splitlines() if "Model!" in line)
+    exact = json.loads(CliRunner().invoke(xlmc, [*words, "--json"]).output)
+    assert shown["Model!B12"].strip() == str(date(1899, 12, 30) + timedelta(days=exact["Model!B12"]))
+    assert shown["Model!B13"].strip() == f"{100 * exact['Model!B13']:.6g} %".replace(".", ",")
+    assert shown["Model!B11"].strip() == f"${exact['Model!B11']:,.0f}".replace(",", ".")
+    assert "e+" not in found.output
 
 
 def xlmc_check(book):

@@ -22,7 +22,7 @@ from xlmc.montecarlo.model.draw_binding import base_point
 from xlmc.montecarlo.rare.account import probability_text
 from xlmc.montecarlo.statistics import Estimate, complement, format_estimate
 from xlmc.montecarlo.statistics.estimate import finite
-from xlmc.montecarlo.statistics.number_text import count_text, decimals_of, number_text
+from xlmc.montecarlo.statistics.number_text import count_text, decimals_of, exact_digits, number_text
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column
@@ -233,7 +233,7 @@ def beside_mean(value: float, row: SummaryRow) -> str:
         return row.form.number(value)
     exact, error = row.form.number(value), row.mean.error
     decimals = decimals_of(row.form.factor * error) if error else None
-    if len(exact) <= _LONG or decimals is None:
+    if decimals is None or (len(exact) <= _LONG and exact_digits(row.form.factor * value)):
         return exact
     return min(exact, row.form.number(value, decimals), key=len)
 

@@ -21,6 +21,7 @@ __all__ = [
     "MOST_DIGITS",
     "count_text",
     "decimals_of",
+    "exact_digits",
     "exact_text",
     "fixed_text",
     "format_estimate",
@@ -137,11 +138,20 @@ def exact_text(value: float) -> str:
     >>> exact_text(1234567.8), exact_text(0.1 + 0.2), exact_text(1 / 3)
     ('1,234,567.8', '0.3', '0.333333')
     """
+    return number_text(value, exact_digits(value) or _DIGITS)
+
+
+def exact_digits(value: float) -> int | None:
+    """Return how many digits, six or more, say what an exact number is; None where it is no decimal number.
+
+    >>> exact_digits(1234567.8), exact_digits(0.1 + 0.2), exact_digits(1 / 3)
+    (8, 6, None)
+    """
     for digits in _EXACT_DIGITS:
         noise = _NOISE * abs(value) if digits <= _ROUND else 0.0
         if abs(float(f"{value:.{digits}g}") - value) <= noise:
-            return number_text(value, digits)
-    return number_text(value)
+            return digits
+    return None
 
 
 def decimals_of(error: float | None) -> int | None:

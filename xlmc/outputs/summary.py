@@ -209,7 +209,7 @@ def base_text(row: SummaryRow) -> str:
     """Write a forecast at the base case; empty without one."""
     if row.kind is Kind.CATEGORY:
         return row.base_text
-    if row.base is None or row.yes is None:
+    if row.base is None or row.kind is not Kind.YES_NO:
         return "" if row.base is None else beside_mean(row.base, row)
     return "yes" if row.base else "no"
 

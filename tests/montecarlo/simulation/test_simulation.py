@@ -100,7 +100,7 @@ def test_no_accepted_trial_is_a_warning(book):
     run = simulated(book(CELLS, GIVEN, {"x": "B1"}, {"f": {"cell": "B1", "above": 5}, "g": "A1"}), 100)
     assert run.accepted == 0
     assert run.warnings == [
-        "no trial was accepted: the filters contradict the assumptions, or accept fewer than 0.037 of the trials. "
+        "no trial was accepted: the filters contradict the assumptions, or accept fewer than 3.7 % of the trials. "
         "'f' rejects all trials by itself"
     ]
     assert run["x"].values.size == 0

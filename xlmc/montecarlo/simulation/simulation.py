@@ -308,7 +308,7 @@ class RunResult:
         found = []
         if self.accepted == 0 and self.stopped.by != "search":
             most = self.acceptance.interval
-            fewer = "" if most is None else f", or accept fewer than {number_text(most[1], 2)} of the trials"
+            fewer = "" if most is None else f", or accept fewer than {number_text(100.0 * most[1], 2)} % of the trials"
             why = f"the filters contradict the assumptions{fewer}{self._by_itself}"
             if self.error_trials >= self.trials:
                 why = "every trial was lost to an error in a cell"

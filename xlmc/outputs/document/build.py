@@ -99,9 +99,9 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
     number = case["Case number"]
     cover = [(name, text) for name, text in case.fields.items() if name != "Title"]
     cover += [("Workbook", workbook.name), ("SHA-256 of the workbook", workbook.sha256)]
-    cover += [
-        ("Trials", f"{count_text(simulation.evaluated)}, of which {count_text(simulation.accepted)} were accepted")
-    ]
+    were = "was" if simulation.accepted == 1 else "were"
+    counted = f"{count_text(simulation.evaluated)}, of which {count_text(simulation.accepted)} {were} accepted"
+    cover += [("Trials", counted)]
     cover += [("Seed", f"{simulation.settings.seed}")]
     return Document(
         title=title,

@@ -210,7 +210,7 @@ def test_without_units_numbers_or_variation():
     assert sentences([2.0], units="mph") == ["speed: 2 mph in the only trial"]
     assert sentences([0.0] * 900 + [2.0] * 100) == ["speed: more probable than not (90.0 % ± 0.9 %) equal to 0"]
     (text,) = sentences([1.0] * 20 + [2.0] * 20)
-    assert re.fullmatch(r"speed: all 40 trials; at least [\d.]+ % with 95 % confidence, between 1 and 2", text)
+    assert re.fullmatch(r"speed: between 1 and 2 in all 40 trials; at least [\d.]+ % with 95 % confidence", text)
 
 
 @pytest.mark.parametrize("values", [GRID, GRID[:7], [1.0, 1.0, 2.0], [5.0]])

@@ -106,7 +106,10 @@ def _of(result: ForecastResult, balances: bool) -> list[Statement]:
     part = _part_text(result)
     main = _main(result, part, balances)
     if main is None:
-        why = "too few effective trials for its central range" if result.sample.n else "no accepted trial has a number"
+        what = "an answer" if result.kind in (Kind.YES_NO, Kind.CATEGORY) else "a number"
+        why = "too few effective trials for its central range"
+        if not result.sample.n:
+            why = f"no accepted trial has {what}" if result.column.size else "no trial is accepted"
         return [Statement(definition.name, "range", f"{definition.name}: {why}")]
     return [main, *(replace(each, text=f"{each.text}{part}") for each in _probabilities(result))]
 
@@ -223,7 +226,7 @@ def _range_text(found: RoundedRange, nominal: float, units: str, trials: int) ->
             return f"{found.low_text}{units} in {_all(trials)}"
         between = f"equal to {found.low_text}{units}"
     elif share.value == 1.0:
-        return f"{percent_text(share)}, {between}"
+        return f"{between} in {percent_text(share)}"
     if nominal > LIKELIER:
         lies = f"is {found.low_text}{units}" if found.low == found.high else f"lies {between}"
         return f"the {number_text(100.0 * nominal)} % range ({percent_text(share)}) {lies}"

@@ -245,6 +245,8 @@ def _acceptance_sentence(run: RunResult) -> str:
             else []
         )
         return "; ".join((*rest_sentences(run), *filtered))
+    if run.weighting is not None and run.accepted == run.trials:
+        return f"No trial is rejected: the evidence weights all {count_text(run.trials)}"
     if not run.model.filters and run.accepted == run.trials:
         return f"The workbook has no filters: all {count_text(run.trials)} trials are accepted"
     return f"Accepted {count_text(run.accepted)} of {count_text(run.trials)} trials, {share_text(run.acceptance)}"

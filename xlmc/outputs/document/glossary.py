@@ -53,7 +53,7 @@ GLOSSARY: Final = (
     ),
     (
         "Threshold",
-        "a limit that matters, such as a speed limit; the results say how probable it is that a forecast exceeds it.",
+        "a limit that matters, such as a legal one; the results say how probable it is that a forecast exceeds it.",
     ),
     (
         "Seed",

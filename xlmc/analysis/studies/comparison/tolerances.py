@@ -238,7 +238,7 @@ def _read_stated(text: str, amount: str) -> _Stated:
     except ValueError:
         value = math.nan
     if found is None or not 0.0 < value < math.inf:
-        hint = "write a positive number, its unit if need be, and before it the forecast: 'Delta-V=0.5 mph'"
+        hint = "write a positive number, its unit if need be, and before it the forecast: 'Name=0.5 mph'"
         raise SimulationError(f"the tolerance {text!r} cannot be read", hint=hint)
     return _Stated(text, value, found["unit"] or "")
 

@@ -217,7 +217,7 @@ def told(text):
 
 
 @pytest.mark.parametrize("output", ["terminal", "html", "pdf", "docx"])
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", [each for each in COMMANDS if each != "methods"])  # errors in % of ranges
 def test_a_number_with_its_error_is_an_estimate_of_the_json(printed, command, output):
     document, texts, _ = printed(command)
     known = np.array(list(estimates_in(document))).reshape(-1, 2)
@@ -235,7 +235,6 @@ def test_a_number_with_its_error_is_an_estimate_of_the_json(printed, command, ou
 NOISE = re.compile(
     r"\d(?:\.\d+)?e\+(?:0\d|1[01])\b"  # a power of ten of a number that people write without
     r"|(?<![\d.e])\d+\.\d{13,}"  # more digits than a number has
-    r"|\de-1[3-9]\b"  # rounding
 )
 
 
@@ -245,7 +244,7 @@ def test_no_number_is_noise(printed, command, output):
     _, texts, _ = printed(command)
     text = texts[output].partition("SHA-256 of every")[0]
     found = [text[max(0, each.start() - 40) : each.end() + 20] for each in NOISE.finditer(text)]
-    assert [each for each in found if command != "stability"] == []  # which tells rounding
+    assert found == []
 
 
 @pytest.mark.parametrize("output", ["terminal", "html", "pdf", "docx"])
@@ -284,11 +283,11 @@ def is_close(number, known, half):
     return at[0] < at[1]
 
 
-@pytest.mark.parametrize("command", COMMANDS)
+@pytest.mark.parametrize("command", [each for each in COMMANDS if each != "methods"])
 def test_a_number_on_a_sheet_is_a_number_of_the_json(printed, command):
     """Those of result sheets to the last bits, those of studies, which are texts made numbers, to their digits."""
     document, _, path = printed(command)
-    is_run = command.startswith("simulate")
+    is_run = command.startswith(("simulate", "report"))
     found = [*numbers_in(document), *derived(document)]
     factors = (1.0,) if is_run else FACTORS
     known = np.sort(np.abs(np.outer(found, factors)).ravel())

@@ -33,7 +33,7 @@ from xlmc.analysis.studies.comparison.paired_statistics import (
     share_above,
     share_of,
 )
-from xlmc.analysis.studies.comparison.variations import names_of, with_plain_sampling
+from xlmc.analysis.studies.comparison.variations import names_of_rows, with_plain_sampling
 from xlmc.analysis.studies.shown import Shown
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
@@ -251,9 +251,10 @@ def stress(
         )
     ranges = [(words, _range_of(words)) for words in scenarios]
     live = [each.name for each in model.live]
-    stressed = [*dict.fromkeys(n for text in assumptions for n in names_of(text, live, "assumption that is drawn"))]
-    known = [each.name for each in model.forecasts]
-    asked = {n for text in forecasts for n in names_of(text, known, "forecast")}
+    stressed = [
+        *dict.fromkeys(n for text in assumptions for n in names_of_rows(text, model.live, "assumption that is drawn"))
+    ]
+    asked = {n for text in forecasts for n in names_of_rows(text, model.forecasts, "forecast")}
     stressed, told = stressed or live, [each for each in model.forecasts if not asked or each.name in asked]
     if not stressed:
         raise SimulationError(

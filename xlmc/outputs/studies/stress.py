@@ -160,7 +160,7 @@ def _restricted(found: Stressed, tail: Tail) -> str:
     from xlmc.montecarlo.statistics.number_text import number_text
 
     row = next(each for each in found.run.model.assumptions if each.name == tail.assumption)
-    form = found.run.model.dated.get(tail.assumption)
+    form = found.run.model.input_forms.get(tail.assumption)
     limit = number_text(tail.limit, 4) if form is None else form.number(tail.limit)
     return f"{'from' if tail.is_high else 'up to'} {limit}{f' {row.units}' if row.units else ''}"
 
@@ -213,7 +213,7 @@ def _of_scenario(found: Stressed, scenario: Scenario) -> Table:
 def _moved_row(found: Stressed, each: Moved) -> tuple[str, ...]:
     from xlmc.montecarlo.definitions.forms import PLAIN
 
-    form = found.run.model.dated.get(each.assumption, PLAIN)
+    form = found.run.model.input_forms.get(each.assumption, PLAIN)
     return (
         each.assumption,
         form.estimate(each.median),

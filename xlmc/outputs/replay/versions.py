@@ -247,6 +247,7 @@ RULES: Final = (
     Rule("0.12.0", "comparisons judge yes/no answers and texts by their shares alone", _ANY),
     Rule("0.12.0", "data tables over a draw keep the values that Excel calculated", _SHOWN),
     Rule("0.12.0", "draws in cells are called by the label beside them", _DRAWN),
+    Rule("0.12.0", "percentages and money of assumptions are written as their cells show them", _ANY),
     Rule("0.12.0", "TRUE and FALSE that no assumption reaches are yes and no, exactly", _ANY),
     Rule("0.12.0", "adjustment weights of matrices of rank correlations are honoured", _calls("RiskCorrmat")),
 )

@@ -210,9 +210,23 @@ class _Column:
     sha256: str
 
 
-def _called(column: _Column, named: Mapping[str, str]) -> _Column:
-    """Return a column of draws under the name that its assumption has now."""
-    return replace(column, name=named.get(column.name, column.name)) if column.kind in ("input", "prior") else column
+def _called(column: _Column, inputs: Mapping[str, str], forecasts: Mapping[str, str]) -> _Column:
+    """Return a column under the name that its assumption or forecast has now: a run may be older than their labels."""
+    named = inputs if column.kind in ("input", "prior") else forecasts if column.kind == "forecast" else {}
+    return replace(column, name=named.get(column.name, column.name))
+
+
+def _names_now(model: CompiledModel) -> dict[str, str]:
+    """Name of a forecast, or its cell where none is called so -> its name."""
+    return {name: f.name for f in model.forecasts for name in reversed(f.names)} | {
+        f.name: f.name for f in model.forecasts
+    }
+
+
+def _by_names_now(found: object, model: CompiledModel) -> object:
+    """Return what a document says of forecasts by the names that these have now."""
+    named = _names_now(model)
+    return {named.get(key, key): each for key, each in found.items()} if isinstance(found, dict) else found
 
 
 class _Columns:
@@ -225,8 +239,8 @@ class _Columns:
     def __init__(self, found: object, model: CompiledModel, path: Path) -> None:
         require(isinstance(found, list), "its columns")
         assert isinstance(found, list)
-        named = {name: a.name for a in model.live for name in a.names}  # a run may be older than their labels
-        listed = [_called(build(_Column, each, "a column"), named) for each in found]
+        inputs = {name: a.name for a in model.live for name in reversed(a.names)}
+        listed = [_called(build(_Column, each, "a column"), inputs, _names_now(model)) for each in found]
         self._listed, self._path = listed, path
         self._names = {kind: [each.name for each in listed if each.kind == kind] for kind in _KINDS}
         live = [a.name for a in model.live]
@@ -284,7 +298,7 @@ def _simulation(found: Document, model: CompiledModel, columns: _Columns) -> Run
     index = columns.of("trial")[""]
     rare = rare_of(found["rare"])
     _check_index(index, trials if rare is None else rare.kept)
-    forecasts, faults = columns.of("forecast"), mapping(found["faults"], "its faults")
+    forecasts, faults = columns.of("forecast"), mapping(_by_names_now(found["faults"], model), "its faults")
     for name in forecasts:
         require(not _holds_infinity(forecasts[name]), f"the forecast {name!r}")
     inputs, prior = columns.of("input"), columns.of("prior")
@@ -308,8 +322,8 @@ def _simulation(found: Document, model: CompiledModel, columns: _Columns) -> Run
         rare=rare,
         origin=origin_of(found["origin"]),
         changed_from=changed_from_of(found.get("changed_from")),
-        discards=_discards(found.get("discards", {}), model),
-        labels=_labels(found.get("labels", {}), model, forecasts),
+        discards=_discards(_by_names_now(found.get("discards", {}), model), model),
+        labels=_labels(_by_names_now(found.get("labels", {}), model), model, forecasts),
     )
 
 

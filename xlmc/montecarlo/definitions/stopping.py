@@ -19,7 +19,6 @@ from typing import Any, ClassVar, Final, NamedTuple, Self
 
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.amounts import as_confidence, as_numbers, as_seconds, as_tolerance
-from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = [
     "GOALS",
@@ -123,7 +122,7 @@ class WholeGoal(Goal):
         if isinstance(self.number, bool) or not isinstance(self.number, Real):
             raise SimulationError(f"{self.number!r} {self.things} were asked for", hint=self.hint)
         if not least <= self.number <= most or self.number != int(self.number):
-            raise SimulationError(f"{count_text(self.number)} {self.things} were asked for", hint=self.hint)
+            raise SimulationError(f"{self.number:,} {self.things} were asked for", hint=self.hint)
 
     @classmethod
     def of(cls, given: Mapping[str, Any]) -> Self:

@@ -842,6 +842,42 @@ def test_a_correlation_is_typed(chromium, running, tmp_path):
     assert box.get_attribute("value") == "0.50"
 
 
+def test_a_scatter_of_the_matrix_is_shown_large(chromium, running, tmp_path):
+    page = Page(chromium, running(book=book_of_decisions(tmp_path / "case.xlsx")))
+    page.tab("pairs")
+    page.until("document.querySelectorAll('.matrix svg').length === 3")
+    heads = page.run("return [...document.querySelectorAll('.matrix thead th')].map((each) => each.innerText)")
+    assert heads == ["margin", "way", "speed"]
+    cells = "return [...document.querySelectorAll('.matrix .shares')].map((each) => each.innerText)"
+    assert all(text.endswith(" %") for text in page.run(cells))
+    page.click(page.of(".matrix button", "each.ariaLabel === given[0]", "Show speed against way"))
+    page.until("document.querySelector('.pair-said').innerText.includes('accepted trials')")
+    assert page.run("return Live.right.pairs.selects.map((each) => each.value)") == ["way", "speed"]
+    page.click(
+        page.of("fieldset.which input", "each.checkVisibility() && each.closest('label').innerText === 'margin'")
+    )
+    page.until("document.querySelectorAll('.matrix svg').length === 1")
+
+
+def test_a_chart_is_zoomed_to_its_range_and_back(chromium, running, tmp_path):
+    page = Page(chromium, running(book=book_of_readings(tmp_path / "case.xlsx")))
+    panel = "const { panel } = Live.right.panels.get('speed'); "
+    ends = f"{panel}return [panel.ends, panel.top, panel.state.low, panel.state.high]"
+    whole, _, low, high = page.run(ends)
+    zoom = page.of(".zoom", "each.ariaLabel === given[0]", "Zoom to the range of speed")
+    page.click(zoom)
+    zoomed = page.run(ends)[0]
+    assert whole[0] < zoomed[0] < low < high < zoomed[1] < whole[1]
+    assert zoom.get_attribute("aria-pressed") == "true"
+    page.at_rest(lambda: page.slider("High of t").send_keys("\ue014"))
+    assert page.run(ends)[0] == zoomed
+    page.click(page.of(".views input", "each.value === given[0]", "cumulative"))
+    assert page.run(ends)[:2] == [zoomed, 100]
+    page.click(page.of(".views input", "each.value === given[0]", "frequency"))
+    page.click(zoom)
+    assert page.run(ends)[0] == whole
+
+
 def test_decisions_and_solved_cells_are_moved(chromium, running, tmp_path):
     page = Page(chromium, running(book=book_of_decisions(tmp_path / "case.xlsx")))
     card = page.card("limit")

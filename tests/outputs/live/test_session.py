@@ -36,7 +36,7 @@ from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.outputs.live.adjustments import NONE, PARTS, Adjustments, adjustments_of, in_words, scenario_of
-from xlmc.outputs.live.frames import pair_of
+from xlmc.outputs.live.frames import matrix_of, pair_of
 from xlmc.outputs.live.hand_over import page_of
 from xlmc.outputs.live.jobs import MOVING_TRIALS, Outcome, SupersededError
 from xlmc.outputs.live.kinds import in_kind
@@ -369,6 +369,34 @@ def test_pairs_of_the_first_trials_alone_say_so(readings, monkeypatch):
     part = pair_of(session.rest, "speed", "distance")
     assert (part["looked"], part["accepted"], part["trials"]) == (1_000, session.rest.accepted, 1_000)
     assert "% of the first 1,000 accepted trials; only the first" in part["quadrants"]
+
+
+def test_a_matrix_of_pairs_says_what_the_pairs_say(readings):
+    session = Session(readings[1])
+    settle(session)
+    session.receive(PageMessage("view", seen(["speed", "distance"], "pairs", "speed", "distance")))
+    (part,) = (each for each in settle(session) if each["kind"] == "part")
+    matrix, pair = part["matrix"], part["pair"]
+    assert matrix["names"] == ["speed", "distance"]
+    assert matrix["limits"][0] == 35.0
+    assert matrix["said"][0] == "speed 35 mph (threshold)"
+    (cell,) = matrix["cells"]
+    assert cell["correlation"] == pytest.approx(pair["correlation"])
+    assert f"{cell['above']:.1f} % of the trials" in pair["quadrants"]
+    assert matrix["points"][0] == session.rest.forecasts["speed"][:300].tolist()
+    assert (matrix["left"], matrix["looked"], matrix["accepted"]) == (0, session.rest.accepted, session.rest.accepted)
+    assert written(part)
+    assert matrix_of(session.rest, ["speed"]) is None
+
+
+def test_a_matrix_is_not_made_while_a_handle_moves(readings):
+    session = Session(readings[1])
+    settle(session)
+    session.receive(PageMessage("view", seen(["speed", "distance"], "pairs", "speed", "distance")))
+    session.receive(change("t", "high", 2.6, held=True))
+    (part,) = (each for each in done(session, until(session, "moving")) if each["kind"] == "part")
+    assert part["pair"]["first"] == "speed"
+    assert "matrix" not in part
 
 
 def test_quadrants_are_those_of_a_threshold_where_there_is_one(readings):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import partial
+from itertools import combinations
 from typing import TYPE_CHECKING, Any, Final
 from weakref import WeakKeyDictionary
 
@@ -17,6 +18,7 @@ from xlmc.analysis.results.statements.in_words import sampling_sentence
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.montecarlo.definitions.forms import PLAIN, Form, span_text
 from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.statistics import (
     Estimate,
     Sample,
@@ -51,7 +53,17 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["Bases", "bases_of", "frame_of", "matters_html", "pair_of", "rest_of", "scenarios_html", "tables_html"]
+__all__ = [
+    "Bases",
+    "bases_of",
+    "frame_of",
+    "matrix_of",
+    "matters_html",
+    "pair_of",
+    "rest_of",
+    "scenarios_html",
+    "tables_html",
+]
 
 _VALUES_MOVING: Final = 400
 _VALUES_AT_REST: Final = 4_000
@@ -65,6 +77,11 @@ _MEASURING: Final = 0.8
 """The share of the work that measuring takes, and not writing, where it is shown what matters."""
 
 _POINTS: Final = 2_000
+_MATRIX: Final = 6
+"""Forecasts in a matrix of scatters: all pairs of more would be too small to be read."""
+_MATRIX_POINTS: Final = 300
+_RANKED: Final = 1 << 16
+"""Trials that a matrix looks at: each rank correlation sorts them."""
 """Accepted trials that a scatter shows."""
 
 
@@ -364,9 +381,54 @@ def pair_of(simulation: RunResult, first: str, second: str) -> dict[str, Any] | 
     }
 
 
+def matrix_of(simulation: RunResult, names: Collection[str]) -> dict[str, Any] | None:
+    """Return some forecasts two at a time, for a matrix of scatters; None for fewer than two that vary.
+
+    Of each two it has the rank correlation and the share of the trials in which both lie above their thresholds or
+    medians, as the sheet Pairs.
+
+    Args:
+        simulation: the run; without weights.
+        names: of forecasts, of which the first `_MATRIX` that have no texts are taken.
+    """
+    if simulation.weighting is not None:
+        return None
+    chosen = [name for name in simulation.results if name in names and name not in simulation.labels]
+    columns: dict[str, NDArray[np.float64]] = {}
+    bounds: list[tuple[float, str]] = []
+    while chosen and len(columns) < _MATRIX:
+        values = np.asarray(simulation.forecasts[name := chosen.pop(0)][:_RANKED])
+        known = values[np.isfinite(values)]
+        if known.size > 2 and np.ptp(known) > 0.0:
+            columns[name] = values
+            bounds.append(_limit(simulation, name, known))
+    if len(columns) < 2:
+        return None
+    shown, cells = [*columns], []
+    for (first, first_limit), (second, second_limit) in combinations(zip(shown, bounds, strict=True), 2):
+        checkpoint()
+        both = np.isfinite(columns[first]) & np.isfinite(columns[second])
+        x, y = columns[first][both], columns[second][both]
+        above = np.count_nonzero((x > first_limit[0]) & (y > second_limit[0])) / max(x.size, 1)
+        related = finite(rank_correlation(x, y).value) if x.size > 2 else None
+        cells.append({"first": first, "second": second, "correlation": related, "above": 100.0 * above})
+    return {
+        "names": shown,
+        "left": len(chosen),
+        "limits": [bound for bound, _ in bounds],
+        "said": [said for _, said in bounds],
+        "points": [[finite(float(value)) for value in columns[name][:_MATRIX_POINTS]] for name in shown],
+        "cells": cells,
+        "looked": min(_RANKED, simulation.accepted),
+        "accepted": simulation.accepted,
+    }
+
+
 def _limit(simulation: RunResult, name: str, values: NDArray[np.float64]) -> tuple[float, str]:
     """Return the threshold of a forecast, or else the median of the trials, and what it is in words."""
     result = simulation.results.get(name)
+    if result is not None and result.kind is Kind.YES_NO:
+        return 0.5, f"{name} (a yes is above)"
     threshold = None if result is None else result.definition.threshold
     units, form = _units(simulation, name), _form(simulation, name)
     if threshold is not None:

@@ -17,7 +17,7 @@ from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.outputs.document.element import element, join
 from xlmc.outputs.live.adjustments import Adjustments
 from xlmc.outputs.live.comparison import Comparison
-from xlmc.outputs.live.frames import Bases, bases_of, frame_of, matters_html, pair_of, rest_of, tables_html
+from xlmc.outputs.live.frames import Bases, bases_of, frame_of, matrix_of, matters_html, pair_of, rest_of, tables_html
 from xlmc.outputs.live.moving_models import KnownModels
 from xlmc.outputs.live.protocol import Message, PageMessage
 from xlmc.outputs.live.window_book import shapes_of
@@ -67,7 +67,7 @@ class SupersededError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Tab:
-    """An open tab, the two quantities of the tab `pairs`, and the forecasts that other tabs are of."""
+    """An open tab, the two quantities of the tab `pairs`, and the forecasts that tabs are of."""
 
     key: str = "charts"
     first: str = ""
@@ -96,7 +96,7 @@ class View:
 
 def _tab(sent: PageMessage, chosen: tuple[str, ...]) -> Tab:
     if sent["tab"] == "pairs":
-        return Tab("pairs", sent["first"], sent["second"])
+        return Tab("pairs", sent["first"], sent["second"], chosen)
     return Tab(sent["tab"], chosen=chosen if sent["tab"] in ("matters", "tables") else ())
 
 
@@ -144,7 +144,10 @@ class Job:
 PARTS: Final[Mapping[str, Callable[[RunResult, Tab, ReportShare], Message]]] = {
     "matters": lambda run, tab, report_share: {"html": matters_html(run, tab.chosen, report_share)},
     "tables": lambda run, tab, report_share: {"html": tables_html(run, tab.chosen, report_share)},
-    "pairs": lambda run, tab, _: {"pair": pair_of(run, tab.first, tab.second)},
+    "pairs": lambda run, tab, _: {
+        "pair": pair_of(run, tab.first, tab.second),
+        **({"matrix": matrix_of(run, tab.chosen)} if tab.chosen else {}),
+    },
 }
 """Tab whose contents are made of a run at rest -> what makes them."""
 
@@ -246,7 +249,7 @@ class StateRun:
         messages[0]["shapes"] = shapes_of(model, self._reshaped(model))
         if resting:
             return [*messages, {"kind": "rest", "version": self.version, **rest_of(found)}]
-        pairs = (tab for tab in view.tabs if tab.key == "pairs")
+        pairs = (replace(tab, chosen=()) for tab in view.tabs if tab.key == "pairs")  # whose matrix takes its time
         return [*messages, *(_part(found, self.version, tab, lambda share: None) for tab in pairs)]
 
     def _reshaped(self, model: CompiledModel) -> list[str]:

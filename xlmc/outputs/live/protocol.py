@@ -55,7 +55,7 @@ there is something to |
 from too few trials; `stage`: \
 `moving` or `rest`; `shapes`: the distributions that differ from those of the workbook |
 | `rest` | `version`, `sentences`, `warnings`, `checks`, `filters`, `sampling` | what is said of a run at rest |
-| `part` | `tab`, `version`, `html` or `pairs` | the contents of the open tab |
+| `part` | `tab`, `version`, `html`, or `pair` and `matrix` | the contents of the open tab |
 | `running` | `version`, `stage`, `share` | how far a run is; `share` 1: done |
 | `study` | `what`, `of`, `state`, `step`, `seconds`, `text` | how far a study is; `of`: the changes that it is asked \
 with; `state`: `running`, `done`, `cancelled`, \

@@ -16,6 +16,7 @@ class Panel {
     this.decimals = Math.max(0, -Math.round(Math.log10(this.step)));
     this.find = (selector) => element.querySelector(selector);
     this.box = (key) => element.querySelector(`.boxes .${key}`);
+    /** @type {any} `low`, `high` and their texts are set with the first range */
     this.state = { view: "frequency" };
     this.listen(element);
     this.draw();

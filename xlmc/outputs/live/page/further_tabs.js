@@ -3,6 +3,62 @@
 
 const MOST_DOTS = 2000;
 
+/** All chosen answers two at a time: below the diagonal scatters, above it rank correlation and share above both limits. */
+class PairMatrix {
+  constructor(place, chosen) {
+    this.chosen = chosen;
+    this.said = make("p", { class: "remark" });
+    this.table = make("table", { class: "matrix" });
+    this.root = make("section", { hidden: true }, make("h3", { text: "All chosen answers two at a time" }), this.said,
+      make("div", { class: "wide", tabindex: "0", role: "group", "aria-label": "Matrix of scatters" }, this.table));
+    place.append(this.root);
+  }
+
+  show(matrix) {
+    this.root.hidden = !matrix;
+    if (!matrix) return;
+    const { names, said, looked, accepted, left } = matrix;
+    const first = looked < accepted ? ` Of the first ${countText(looked)} of ${countText(accepted)} accepted trials.` : "";
+    const more = left ? ` ${countText(left)} further answers are left out.` : "";
+    this.said.textContent = `Above the diagonal: rank correlation, and the share of the trials above both limits (lines): ${said.join("; ")}.${first}${more}`;
+    const head = (name, scope) => make("th", { scope }, named(name));
+    this.table.replaceChildren(make("thead", {}, make("tr", {}, make("td"), ...names.map((name) => head(name, "col")))),
+      make("tbody", {}, ...names.map((name, row) => make("tr", {}, head(name, "row"),
+        ...names.map((_, column) => this.cell(matrix, row, column))))));
+  }
+
+  cell({ names, points, limits, cells }, row, column) {
+    if (row === column) return make("td", { class: "same" });
+    const [low, high] = [Math.min(row, column), Math.max(row, column)];
+    const { correlation, above } = cells.find(({ first, second }) => first === names[low] && second === names[high]);
+    if (row < column) {
+      return make("td", { class: "shares" },
+        make("b", { text: correlation === null ? "–" : styled(correlation.toFixed(2)) }), make("br"), `${styled(above.toFixed(1))} %`);
+    }
+    const picture = scatterPicture(points[column], points[row], limits[column], limits[row]);
+    return make("td", {}, make("button", { type: "button", "aria-label": `Show ${names[row]} against ${names[column]}`,
+      on: { click: () => this.chosen(names[column], names[row]) } }, picture));
+  }
+}
+
+const SMALL = 90; // width and height of a scatter in the matrix
+
+/** Points of two quantities, and a line at the limit of each. */
+function scatterPicture(x, y, right, upper) {
+  const at = scaleTo(x, SMALL), up = scaleTo(y, SMALL);
+  const dots = x.flatMap((value, i) => (value === null || y[i] === null ? [] : [`M${at(value)} ${(SMALL - up(y[i])).toFixed(1)}h1.6`])).join("");
+  const lines = `M${at(right)} 0V${SMALL}M0 ${(SMALL - up(upper)).toFixed(1)}H${SMALL}`;
+  return makeSvg("svg", { viewBox: `0 0 ${SMALL} ${SMALL}`, "aria-hidden": "true" },
+    makeSvg("path", { class: "limit", d: lines }), makeSvg("path", { class: "dots", d: dots }));
+}
+
+/** What puts values between the ends of a picture, with some room; all in its middle where they do not differ. */
+function scaleTo(values, size) {
+  const known = values.filter((value) => value !== null);
+  const [low, high] = [Math.min(...known), Math.max(...known)];
+  return (value) => Number((high > low ? Math.min(size, Math.max(0, size * (0.04 + (0.92 * (value - low)) / (high - low)))) : size / 2).toFixed(1));
+}
+
 /** A scatter of two quantities in the same accepted trials, and both in one chart where they have one unit. */
 class PairView {
   constructor(place, chosen) {
@@ -19,6 +75,12 @@ class PairView {
     }).observe(this.chart);
     place.append(make("p", { class: "choices" }, make("label", {}, "To the right ", this.selects[0]),
       make("label", {}, "Upwards ", this.selects[1])), this.said, this.quadrants, this.chart, save, this.overlay);
+    this.matrix = new PairMatrix(place, (first, second) => {
+      this.selects[0].value = first;
+      this.selects[1].value = second;
+      this.choose();
+      this.chart.scrollIntoView({ block: "nearest" });
+    });
   }
 
   /** Names to choose from: forecasts first. */

@@ -18,6 +18,8 @@ function forecastElement({ name, units, marks }, number) {
     make("fieldset", { class: "views" }, make("legend", { text: "Chart" }), view("frequency", "Frequency"),
       view("cumulative", "Cumulative"), view("reverse", "Reverse cumulative")),
     make("p", { class: "choices" }, make("label", {}, "Bars ", together),
+      make("button", { type: "button", class: "zoom", "aria-pressed": "false", text: "Zoom to the range",
+        "aria-label": `Zoom to the range of ${name}` }),
       ...lines.map((label) => make("label", {}, make("input", { type: "checkbox", class: "line", value: label, checked: true }),
         label)),
       make("label", {}, "Mark at ", make("input", { type: "text", class: "percentiles", placeholder: "5, 50, 95", size: 8,
@@ -77,6 +79,7 @@ class LivePanel extends Panel {
   listen(element) {
     super.listen(element);
     this.find(".together").addEventListener("change", ({ target }) => { this.together = Number(target.value); });
+    this.find(".zoom").addEventListener("click", () => this.toggleZoom());
     this.find(".above").addEventListener("change", () => this.typeThreshold());
     this.find(".central").addEventListener("change", () => this.typeCentral());
     this.find(".back").addEventListener("click", () => LivePanel.back(this.forecast.name));
@@ -187,9 +190,26 @@ class LivePanel extends Panel {
     if (state.low !== undefined) this.show();
   }
 
-  /** How far the axes reach: both states have room, and while a handle is held nothing shrinks. */
+  /** Draw what lies between the grabbers, with some room; or the whole again. */
+  toggleZoom() {
+    this.zoomed = this.zoomed ? null : zoomedTo(this.state, this.bins);
+    this.find(".zoom").setAttribute("aria-pressed", String(Boolean(this.zoomed)));
+    this.draw();
+  }
+
+  /**
+   * How far the axes reach: both states have room, and while a handle is held nothing shrinks; where they are zoomed,
+   * the bars that can be seen fill the height.
+   */
   reach(held) {
     const { behind } = this.forecast;
+    if (this.zoomed) {
+      this.ends = [...this.zoomed];
+      const seen = [highestIn(this.ends, this.bins.edges, this.bins.counts),
+        behind ? highestIn(this.ends, behind.edges, this.heights(behind)) : 0];
+      this.top = this.state.view === "frequency" ? Math.max(1, ...seen) * 1.08 : 100;
+      return;
+    }
     const ends = [this.bins.edges[0], this.bins.edges.at(-1)];
     if (behind) {
       ends[0] = Math.min(ends[0], behind.edges[0]);
@@ -268,6 +288,18 @@ class LivePanel extends Panel {
   legend() {
     return `${super.legend()}${this.forecast.behind ? "    violet line: the state for comparison" : ""}`;
   }
+}
+
+/** Where a chart begins and ends that shows a range, which may be open or very narrow. */
+function zoomedTo({ low, high }, { edges, width }) {
+  const [from, to] = [Math.max(low, edges[0]), Math.min(high, edges.at(-1))];
+  const room = Math.max(0.15 * (to - from), 2 * width);
+  return [from - room, to + room];
+}
+
+/** The highest of the bars of which a part lies between two ends; 0 where none does. */
+function highestIn([from, to], edges, counts) {
+  return Math.max(0, ...counts.filter((_, i) => edges[i] < to && edges[i + 1] > from));
 }
 
 /** Buttons that copy and save a chart; `svg` saves it as vectors. */

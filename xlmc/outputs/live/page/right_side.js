@@ -65,7 +65,7 @@ class RightSide {
       tab.tabIndex = each === key ? 0 : -1;
       this.places[each].hidden = each !== key;
     }
-    if (["charts", "matters", "tables"].includes(key)) this.places[key].prepend(...(key === "charts" ? [this.sentences] : []), this.choices);
+    if (["charts", "matters", "pairs", "tables"].includes(key)) this.places[key].prepend(...(key === "charts" ? [this.sentences] : []), this.choices);
     if (tell) this.look();
   }
 
@@ -182,10 +182,11 @@ class RightSide {
       make("summary", { text: `${count} on answers without a chart` }), make("ul", {}, ...aside.map(line)))));
   }
 
-  part({ tab, html, pair }) {
+  part({ tab, html, pair, matrix }) {
     if (tab === "scenarios") this.scenarios.part(html);
     else if (html !== undefined) showTables(this.tables[tab], html);
     if (pair !== undefined) this.pairs.show(pair);
+    if (matrix !== undefined) this.pairs.matrix.show(matrix);
   }
 
   state(message) {

@@ -194,3 +194,10 @@ def test_a_draw_in_a_cell_that_only_a_check_needs_is_held_at_its_mean(tmp_path):
     assert len(run.inputs) == 1
     assert run.checks[0].holds  # held at its mean, 0.5
     assert run.checks[0].failed == 0
+
+
+def test_cells_of_checks_are_read_too(checked):
+    model = checked(CELLS | {"C4": "=A2>A3"}, {"plausible": "C4"})
+    assert {"S!A1", "S!A2", "S!A3", "S!B1", "S!C4"} == {str(cell) for cell in model.read}
+    assert {str(cell) for cell in model.trees} == {"S!B1", "S!C4"}
+    assert {str(cell) for cell in checked(CELLS, {}).read} == {"S!A1", "S!B1"}

@@ -5,7 +5,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.analysis.results.statements.in_words import (
+    changes_text,
     distribution_text,
+    evidence_text,
     limits_text,
     notes_text,
     parameters_text,
@@ -14,6 +16,19 @@ from xlmc.analysis.results.statements.in_words import (
 )
 from xlmc.excel.address import Area, Cell
 from xlmc.montecarlo.definitions.definitions import Assumption, DataRange, Filter
+from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.definitions.scenarios import (
+    Band,
+    Correlated,
+    Drawn,
+    Frozen,
+    Limits,
+    Numbers,
+    Range,
+    Scenario,
+    Switched,
+    Typed,
+)
 
 HERE = Cell("Inputs", 7, 2)
 
@@ -85,3 +100,54 @@ def test_notes():
 def test_status(model):
     found = {a.name: status(model, a.name, a.frozen) for a in model.assumptions}
     assert found == {"width": "drawn", "length": "drawn", "idle": "not needed", "held": "frozen", "late": "drawn"}
+
+
+DRAG = Cell("Inputs", 28, 4)
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (Frozen("Friction", None), "Friction frozen"),
+        (Frozen("Friction", 0.7), "Friction = 0.7"),
+        (Frozen("Friction", 0.0), "Friction = 0"),
+        (Drawn("Friction"), "Friction drawn"),
+        (Range("Friction", 0.6, 0.8), "Friction from 0.6 to 0.8"),
+        (Range("Friction", 0.6, None), "Friction at least 0.6"),
+        (Range("Friction", None, 0.0), "Friction at most 0"),
+        (Band("Friction", 5.0, 95.0), "Friction from P5 to P95"),
+        (Numbers("Speed", {"mean": 3.0, "std_dev": 0.5}), "Speed mean 3 and std dev 0.5"),
+        (Limits("Angle", {"at_least": 0.0, "below": None}), "Angle at least 0"),
+        (Limits("Angle", {"at_least": None, "below": None}), "Angle without at least, below"),
+        (Switched("Angle", used=True), "Angle used"),
+        (Switched("Angle", used=False), "Angle not used"),
+        (Correlated("a", "b", -0.5), "correlation of a and b -0.5"),
+        (Typed(DRAG, -20.0), "Inputs!D28 = -20"),
+        (Typed(DRAG, "wet"), "Inputs!D28 = wet"),
+        (Typed(DRAG, None), "Inputs!D28 = nothing"),
+        (Typed(DRAG, 3.5, named="Drag"), "Drag = 3.5"),
+    ],
+)
+def test_what_a_scenario_changes(change, text):
+    assert changes_text(Scenario("s", (change,))) == text
+
+
+def test_several_changes_and_none():
+    assert changes_text(Scenario("s", (Drawn("a"), Frozen("b", 1.0)))) == "a drawn; b = 1"
+    assert changes_text(Scenario("s", ())) == "nothing"
+
+
+@pytest.mark.parametrize(
+    ("error", "sizes", "more", "text"),
+    [
+        ("normal", {"std_dev": 0.6}, {}, "reads 12, normal (Std dev 0.6)"),
+        ("instrument", {"percent": 10.0}, {}, "reads 12, instrument (Percent 10): from 10.9091 to 13.3333"),
+        ("at least", {}, {}, "reads 12, at least: from 12"),
+        ("at most", {"plus_minus": 1.0}, {}, "reads 12, at most (Plus or minus 1): to 13"),
+        ("uniform", {"plus_minus": DRAG}, {}, "reads 12, uniform (Plus or minus Inputs!D28)"),
+        ("normal", {"std_dev": 0.6}, {"weighed": True}, "reads 12, normal (Std dev 0.6), as weights"),
+        ("normal", {"std_dev": 0.6}, {"unused": "Use is off"}, "not used: Use is off"),
+    ],
+)
+def test_evidence(error, sizes, more, text):
+    assert evidence_text(Evidence("y", DRAG, DRAG, 12.0, error, sizes, **more)) == text

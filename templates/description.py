@@ -310,6 +310,7 @@ class Template:
         group: the field it belongs to; empty for the reconstruction of crashes, whose words its sheets have.
         columns: the parameter columns of its assumptions.
         data: tables that its distributions take.
+        curve: a second drawing, of restitution against closing speed; it has a sheet of its own.
     """
 
     title: str
@@ -338,6 +339,7 @@ class Template:
     group: str = ""
     columns: tuple[str, ...] = PARAMETER_COLUMNS
     data: tuple[DataTable, ...] = ()
+    curve: Diagram | None = None
 
     @property
     def category(self) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from templates.description import CorrelationRow, Diagram, FilterRow, Look, Template
+from templates.description import CorrelationRow, Diagram, FilterRow, ForecastRow, Look, Template
 from templates.plan_view import line, mark
 from templates.planar_impact.answers import answer_sections
 from templates.planar_impact.equations import model_sections
 from templates.planar_impact.evaluate import evaluate
 from templates.planar_impact.guide import guide
-from templates.restitution_curve import curve_evidence, curve_inputs
+from templates.restitution_curve import curve_diagram, curve_evidence, curve_inputs
 from templates.two_vehicles.drawing import rest_points, vehicle_curves
 from templates.two_vehicles.options import drawing_inputs, duration_inputs, turn_filters, turn_inputs
 from templates.two_vehicles.readings import lever_inputs, readings, rotation_inputs
@@ -26,6 +26,11 @@ from templates.vehicles import SECOND
 __all__ = ["Scene", "describe", "evaluate"]
 
 _CENTRES = (("a_1", "b_1"), ("a_2", "b_2"))
+_CURVE = (
+    ForecastRow("Closing speed along the normal", "approach_[mph|kmh]", "[mph|km/h]", stated="diagnostic"),
+    ForecastRow("Restitution along the normal", "e_n", "", stated="diagnostic"),
+)
+"""What is drawn over the published curve."""
 
 
 def describe(scene: Scene) -> Template:
@@ -48,7 +53,7 @@ def describe(scene: Scene) -> Template:
         ),
         sections=leave_together(sections) if more else sections,
         forecasts=paper_forecasts()
-        + ((*direction_forecasts(yaw=True, near=True), *run_out_forecasts()) if more else ()),
+        + ((*direction_forecasts(yaw=True, near=True), *run_out_forecasts(), *_CURVE) if more else ()),
         filters=_filters(scene) + (turn_filters() if more else ()),
         settings=(("Trials", 200_000), ("Seed", 999)),
         correlations=(CorrelationRow("f_1", "f_2", 0),) if more else (),
@@ -58,6 +63,7 @@ def describe(scene: Scene) -> Template:
         evidence=(*readings(yaw=True), *curve_evidence()) if more else (),
         waiting=run_out_inputs() if more else (),
         waiting_note=RUN_OUT_NOTE,
+        curve=curve_diagram("e_n", "approach_[mph|kmh]") if more else None,
     )
 
 

@@ -17,7 +17,17 @@ from templates.writer.fixed_size import fix_chart_sizes
 from templates.writer.guide_sheet import draw_guide
 from templates.writer.inputs_sheet import draw_inputs, draw_waiting
 from templates.writer.model_sheet import draw_model
-from templates.writer.places import RECORD, TESTS, WAITING, data_places, drawing_sheet, name_cells, places, reference
+from templates.writer.places import (
+    CURVE,
+    RECORD,
+    TESTS,
+    WAITING,
+    data_places,
+    drawing_sheet,
+    name_cells,
+    places,
+    reference,
+)
 from templates.writer.record_sheet import draw_record
 from templates.writer.results_sheet import draw_results_wanted
 from templates.writer.scene_sheet import chart_size, draw_scene
@@ -48,8 +58,7 @@ def write_book(template: Template, path: Path, values: Values | None = None) -> 
         _write(template, draft, {})
         values = computed(read_workbook(draft.getvalue(), path.name))
     _write(template, path, values)
-    if template.diagram is not None:
-        fix_chart_sizes(path, *chart_size(template.diagram))
+    fix_chart_sizes(path, [chart_size(each) for each in (template.diagram, template.curve) if each is not None])
 
 
 def _write(template: Template, target: Path | BytesIO, values: Values) -> None:
@@ -77,6 +86,8 @@ def _write(template: Template, target: Path | BytesIO, values: Values) -> None:
         draw_model(model, styles, template, at, values)
         if template.diagram is not None:
             draw_scene(workbook, workbook.add_worksheet(drawing_sheet(template)), styles, template.diagram, values)
+        if template.curve is not None:
+            draw_scene(workbook, workbook.add_worksheet(CURVE), styles, template.curve, values)
         if template.evidence:
             draw_evidence(workbook.add_worksheet("Evidence"), styles, template, at, values)
         wanted, guide = map(workbook.add_worksheet, ("Results wanted", "Guide"))

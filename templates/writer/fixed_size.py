@@ -7,6 +7,7 @@ workbook's font these are wider, and a plan view is stretched. Here it is tied t
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from pathlib import Path
 from zipfile import ZipFile
 
@@ -18,14 +19,17 @@ _TWO_CELLS = re.compile(
 )
 
 
-def fix_chart_sizes(path: Path, width: int, height: int) -> None:
-    """Give every chart of a workbook that XlsxWriter wrote this size, in pixels."""
+def fix_chart_sizes(path: Path, sizes: Sequence[tuple[int, int]]) -> None:
+    """Give the charts of a workbook that XlsxWriter wrote, one a sheet, these widths and heights, in pixels."""
+    extents = {
+        f"xl/drawings/drawing{number}.xml": f'<xdr:ext cx="{width * _EMU_PER_PIXEL}" cy="{height * _EMU_PER_PIXEL}"/>'
+        for number, (width, height) in enumerate(sizes, 1)
+    }
     with ZipFile(path) as book:
         parts = [(info, book.read(info)) for info in book.infolist()]
-    size = f'<xdr:ext cx="{width * _EMU_PER_PIXEL}" cy="{height * _EMU_PER_PIXEL}"/>'
     with ZipFile(path, "w") as book:
         for info, data in parts:
-            if info.filename.startswith("xl/drawings/drawing"):
-                anchored = rf"<xdr:oneCellAnchor>\1{size}\2</xdr:oneCellAnchor>"
+            if info.filename in extents:
+                anchored = rf"<xdr:oneCellAnchor>\1{extents[info.filename]}\2</xdr:oneCellAnchor>"
                 data = _TWO_CELLS.sub(anchored, data.decode()).encode()
             book.writestr(info, data, compress_type=info.compress_type)

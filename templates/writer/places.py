@@ -7,6 +7,7 @@ from xlsxwriter.utility import quote_sheetname, xl_rowcol_to_cell
 from templates.description import Template, TestTable
 
 __all__ = [
+    "CURVE",
     "HEADER_ROW",
     "MOST_CAPTIONS",
     "RECORD",
@@ -34,6 +35,8 @@ RECORD = "Record"
 """The sheet of a table that is pasted."""
 RECORD_VALUES = 17
 """The column of that sheet in which what is read from the table stands."""
+CURVE = "Restitution"
+"""The sheet of the second drawing."""
 TESTS = "Stiffness"
 """The sheet of rows of tests."""
 MOST_CAPTIONS = 3

@@ -294,7 +294,7 @@ def _drawing(axes: Axes, simulation: RunResult, name: str | None) -> None:
             axes.plot(across, upwards, ".", color=INK, markersize=2.5, alpha=0.5, label=line.name)
         else:
             axes.plot(across, upwards, label=line.name)
-    axes.set_title("Trials over the drawing", **_TITLE)
+    axes.set_title("Trials over the chart", **_TITLE)
     axes.legend(loc="best", fontsize=8, frameon=False)
     _plain(axes, chart.across)
     axes.set_ylabel(chart.data.upwards, parse_math=False)

@@ -21,7 +21,7 @@ from xlmc.outputs.document.drawn_trials import drawn_trials
 from xlmc.outputs.notebook import run_html
 from xlmc.outputs.page import page_text
 
-TITLE = "Trials over the scene"
+TITLE = "Trials over the chart"
 
 
 @pytest.fixture(scope="module")
@@ -67,6 +67,15 @@ def test_as_a_limit_the_curve_keeps_the_points_between_its_lines(impact, tmp_pat
 
     assert outside(impact) > 0.2
     assert outside(with_evidence(tmp_path, "Restitution within the published range")) == 0
+
+
+def test_a_plan_view_has_the_curve_beside_it():
+    """On a sheet of its own: the restitution that run-out and directions imply, which nobody drew."""
+    run = xlmc.load(TEMPLATES["planar-impact"]).simulate(40_000)._run
+    points = np.array(drawn_trials(run).data.cloud.points)
+    np.testing.assert_array_equal(points[:, 1], run.forecasts["Restitution along the normal"][:1_000])
+    np.testing.assert_array_equal(points[:, 0], run.forecasts["Closing speed along the normal"][:1_000])
+    assert 0 <= points[:, 1].min() < points[:, 1].max() < 1  # the filter of the template
 
 
 def test_a_cloud_is_drawn_as_dots_and_named(impact):

@@ -15,9 +15,11 @@ from xlmc.excel.address import Area, parse_address
 from xlmc.montecarlo.definitions.cell_references import cell_of_reference, split_sheet
 from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.document.parts import Chart, Line, Lines
-from xlmc.outputs.document.scene_drawing import scene_lines
+from xlmc.outputs.document.scene_drawing import SceneLine, scenes
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from numpy.typing import NDArray
 
     from xlmc.excel.address import Cell
@@ -36,22 +38,30 @@ def drawn_trials(simulation: RunResult) -> Chart | None:
     Raises:
         WorkbookError: the part of a chart is no XML.
     """
-    workbook, scene = simulation.model.workbook, scene_lines(simulation.model.workbook)
-    if scene is None or len(scene[1]) != 2 or not simulation.accepted:
+    if not simulation.accepted:
         return None
-    lines, (across, upwards) = scene
     columns = _columns(simulation)
+    found = (_over(simulation, columns, lines, axes) for lines, axes in scenes(simulation.model.workbook))
+    return next((chart for chart in found if chart is not None), None)
+
+
+def _over(
+    simulation: RunResult, columns: Mapping[Cell, NDArray[np.float64]], lines: Sequence[SceneLine], axes: Sequence[str]
+) -> Chart | None:
+    """Draw the trials over one drawing."""
+    curves = tuple(Line(line.name, tuple(line.points)) for line in lines if not line.marks)
+    if len(axes) != 2 or not curves:
+        return None
     for mark in lines:
-        pair = [columns.get(cell) for cell in _quantities(workbook, mark.where)] if len(mark.points) == 1 else []
-        x, y = pair if len(pair) == 2 else (None, None)
-        if x is None or y is None:
+        cells = _quantities(simulation.model.workbook, mark.where) if len(mark.points) == 1 else []
+        if len(cells) != 2 or not columns.keys() >= {*cells}:
             continue
-        points = _points(simulation, x, y)
+        points = _points(simulation, columns[cells[0]], columns[cells[1]])
         if len(set(points)) > 1:
-            curves = tuple(Line(line.name, tuple(line.points)) for line in lines if not line.marks)
             cloud = Line("Accepted trials", tuple(points))
-            said = f"{count_text(len(points))} accepted trials over {', '.join(line.name for line in curves)}"
-            return Chart("", across, Lines(curves, upwards, cloud=cloud), said) if curves else None
+            named = " and ".join(f"“{line.name}”" for line in curves)
+            said = f"{count_text(len(points))} accepted trials over {named}"
+            return Chart("", axes[0], Lines(curves, axes[1], cloud=cloud), said)
     return None
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from typing import Final
 from xml.etree.ElementTree import Element
@@ -18,10 +19,10 @@ from xlmc.outputs.document.colours import GRID, INK
 from xlmc.outputs.document.drawings import Scale, drawing, line_to, path_of, scale_of, text_at
 from xlmc.outputs.document.parts import Drawing
 
-__all__ = ["SceneLine", "scene_drawing", "scene_lines"]
+__all__ = ["SceneLine", "scene_drawing", "scenes"]
 
 _CHART: Final = re.compile(r"xl/charts/chart\d+\.xml")
-_SHEET: Final = re.compile(r"'?(scene|drawing)'?!", re.IGNORECASE)
+_SHEET: Final = re.compile(r"'?(scene|drawing|restitution)'?!", re.IGNORECASE)
 _COLOUR: Final = re.compile("[0-9A-Fa-f]{6}")
 _MOST_SERIES, _MOST_POINTS = 40, 2_000
 """What a scene has at most; a chart with more is another kind of picture, and is not drawn."""
@@ -54,12 +55,11 @@ def scene_drawing(workbook: Workbook) -> Drawing | None:
     Raises:
         WorkbookError: the part of a chart is no XML.
     """
-    found = scene_lines(workbook)
-    return None if found is None else _drawn(*found)
+    return next((_drawn(*found) for found in scenes(workbook)), None)
 
 
-def scene_lines(workbook: Workbook) -> tuple[list[SceneLine], list[str]] | None:
-    """Return the lines of that chart, and the titles of its axes; None if the workbook has none.
+def scenes(workbook: Workbook) -> Iterator[tuple[list[SceneLine], list[str]]]:
+    """Iterate over such charts, each as its lines and the titles of its axes.
 
     Raises:
         WorkbookError: the part of a chart is no XML.
@@ -68,8 +68,7 @@ def scene_lines(workbook: Workbook) -> tuple[list[SceneLine], list[str]] | None:
         root = tree(workbook.parts[part], part)
         lines = [line for line in map(_line, root.iterfind(".//{*}scatterChart/{*}ser")) if line is not None]
         if lines and len(lines) <= _MOST_SERIES:
-            return lines, [_words(axis) for axis in root.iterfind(".//{*}valAx/{*}title")]
-    return None
+            yield lines, [_words(axis) for axis in root.iterfind(".//{*}valAx/{*}title")]
 
 
 def _line(series: Element) -> SceneLine | None:

@@ -53,9 +53,7 @@ _REPORT_ONLY: Final = dict.fromkeys(OUTPUTS, "it explains the report")
 SECTIONS: Final[dict[str, Section]] = {
     "answer": Section("The question and the answer", _in_report("answer"), _STATED),
     "scene": Section("The {drawing}", _in_report("scene"), _IN_WORKBOOK),
-    "scene-trials": Section(
-        "Trials over the {drawing}", _in_report("scene-trials"), {"terminal": "charts are for files"}
-    ),
+    "scene-trials": Section("Trials over the chart", _in_report("scene-trials"), {"terminal": "charts are for files"}),
     "forecasts": Section(
         "The forecasts",
         _in_report("forecasts"),

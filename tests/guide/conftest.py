@@ -44,7 +44,7 @@ def _type(book: openpyxl.Workbook) -> None:
     wanted = book["Results wanted"]
     named = [cell.value for cell in book["Inputs"][4]]
     shown = {f'={cell}&"': named[named.index(cell) + 1] for cell in ("vehicle_1", "vehicle_2")}
-    rows = {_label(row[0].value, shown): row[0].row for row in wanted.iter_rows(min_row=20, max_row=28)}
+    rows = {_label(row[0].value, shown): row[0].row for row in wanted.iter_rows(min_row=22, max_row=30)}
     for name, limits, because in FILTERS:
         given = {text.rpartition(" ")[0]: float(text.rpartition(" ")[2]) for text in limits.split(", ")}
         for column, limit in enumerate(COLUMNS, 3):

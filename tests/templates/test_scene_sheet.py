@@ -34,19 +34,18 @@ def test_the_templates_with_something_to_draw_are_drawn():
 
 @pytest.mark.parametrize("name", [name for name in BOOKS if name.removesuffix("-si") in DRAWN])
 def test_the_chart_has_a_series_for_every_curve_over_its_own_cells(name, book_path, described, read):
-    diagram = described[name].diagram
-    sheet = "Drawing" if described[name].group else "Scene"
+    template = described[name]
+    diagrams = {"Drawing" if template.group else "Scene": template.diagram}
+    diagrams |= {} if template.curve is None else {"Restitution": template.curve}
     with zipfile.ZipFile(book_path[name]) as book:
-        charts = [part for part in book.namelist() if part.startswith("xl/charts/chart")]
-        xml = book.read(charts[0]).decode()
-    assert len(charts) == 1
-    areas = re.findall(rf"<c:xVal>.*?<c:f>{sheet}!\$B\$(\d+)(?::\$B\$(\d+))?</c:f>", xml, re.DOTALL)
-    cells = read(name).sheets[sheet].cells
-    vehicles = described[name].vehicles
-    names = [[cells[row, 1].value for row in range(int(top), int(end or top) + 1)] for top, end in areas]
-    for curve, labels in zip(diagram.curves, names, strict=False):
-        assert labels == [shown_label(curve.name, vehicles)] * len(curve.points)
-    assert len(areas) == len(diagram.curves) + diagram.plan
+        charts = [book.read(part).decode() for part in book.namelist() if part.startswith("xl/charts/chart")]
+    for xml, (sheet, diagram) in zip(charts, diagrams.items(), strict=True):
+        areas = re.findall(rf"<c:xVal>.*?<c:f>{sheet}!\$B\$(\d+)(?::\$B\$(\d+))?</c:f>", xml, re.DOTALL)
+        cells = read(name).sheets[sheet].cells
+        names = [[cells[row, 1].value for row in range(int(top), int(end or top) + 1)] for top, end in areas]
+        for curve, labels in zip(diagram.curves, names, strict=False):
+            assert labels == [shown_label(curve.name, template.vehicles)] * len(curve.points)
+        assert len(areas) == len(diagram.curves) + diagram.plan
 
 
 @pytest.mark.parametrize("name", PLANS)

@@ -208,3 +208,23 @@ def test_ranges_of_answers(words, low, high, trials):
 def test_what_cannot_be_asked_is_refused(more, message):
     with pytest.raises(SimulationError, match=message):
         xlmc.stress(sum_of_two(), **{"trials": 1_000, **more})
+
+
+def test_of_many_inputs_and_answers_those_that_matter_are_told():
+    """Of 30 inputs the 20 with the largest factors, and of 25 forecasts the first 20, or those that are named."""
+    names = [f"a{number}" for number in range(30)]
+    model = xlmc.model(
+        lambda **a: {f"y{at}": sum((k + 1) * a[name] for k, name in enumerate(names)) + at for at in range(25)},
+        dict.fromkeys(names, xlmc.Uniform(0, 1)),
+        [f"y{at}" for at in range(25)],
+    )
+    found = xlmc.stress(model, trials=20_000)
+    assert [each.name for each in found.forecasts] == [f"y{at}" for at in range(20)]
+    assert found.untold == 5
+    told = [pair[0].assumption for pair in found.ranked("y3") if "y3" in pair[0].parts]
+    assert len(told) == 20
+    assert set(told) >= set(names[14:])
+    assert told[0] in names[27:]
+    assert len(found.scenarios[0].inputs) == 20
+    assert "Told of the first 20 forecasts; 5 more can be named" in str(found)
+    assert [each.name for each in xlmc.stress(model, trials=2_000, forecasts=["y24"]).forecasts] == ["y24"]

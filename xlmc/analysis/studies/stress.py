@@ -49,6 +49,7 @@ from xlmc.montecarlo.statistics.number_text import count_text, number_text
 from xlmc.montecarlo.statistics.proportions import least_error
 
 __all__ = [
+    "MOST",
     "SCENARIO",
     "SHARE",
     "Moved",
@@ -66,6 +67,9 @@ Tell = Callable[[str], None]
 
 SHARE: Final = 10.0
 SCENARIO: Final = "above P90"
+
+MOST: Final = 20
+"""Forecasts that are told where none is named, and assumptions for each of them."""
 
 _LEAST: Final = 30
 """Trials that a part must have for a statistic of it."""
@@ -161,7 +165,7 @@ class Scenario:
         low: the least answer that belongs to it; minus infinity for none.
         high: the largest one, likewise.
         trials: how many these are.
-        inputs: those that moved most first; none where the trials are too few.
+        inputs: those that moved most first, 20 at most; none where the trials are too few.
     """
 
     forecast: str
@@ -183,8 +187,10 @@ class Stressed(Shown):
         forms: how the numbers of each are written; of a share as one.
         texts: of answers that are texts, the one whose share is told.
         base: the answers of all trials.
-        tails: of each assumption the low one, then the high one.
+        tails: of each assumption the low one, then the high one; each has the forecasts of which the assumption is
+            among the 20 that move the mean most.
         scenarios: of each forecast that is a number.
+        untold: forecasts, from the 21st on, that are not told since nobody asked for them.
         still: assumptions that have one value in all accepted trials, or hardly more.
         valueless: forecasts that are a number in hardly any trial.
     """
@@ -197,6 +203,7 @@ class Stressed(Shown):
     base: dict[str, Part]
     tails: tuple[Tail, ...]
     scenarios: tuple[Scenario, ...]
+    untold: int
     still: tuple[str, ...]
     valueless: tuple[str, ...]
 
@@ -233,7 +240,7 @@ def stress(
         share: of the accepted trials in each tail, in percent; above 0 and up to 50.
         assumptions: names of those that are stressed, joined by commas, `*` for any letters; all that are drawn where
             there are none.
-        forecasts: names of those that are told, in the same form; all where there are none.
+        forecasts: names of those that are told, in the same form; the first 20 where there are none.
         scenarios: the answers whose inputs are looked at: `above P90`, `below 20`, `between P5 and P10`; a number
             without P is in the unit of the forecast.
         trials: of the run; as in `Model.simulate`, like what follows.
@@ -256,6 +263,8 @@ def stress(
     ]
     asked = {n for text in forecasts for n in names_of_rows(text, model.forecasts, "forecast")}
     stressed, told = stressed or live, [each for each in model.forecasts if not asked or each.name in asked]
+    left_out = 0 if asked else max(len(told) - MOST, 0)
+    told = told[: len(told) - left_out]
     if not stressed:
         raise SimulationError(
             "Nothing is drawn", where=model.workbook.name, hint="xlmc check shows which assumptions are not needed"
@@ -272,18 +281,18 @@ def stress(
     valueless = tuple(name for name, each in columns.items() if each.accepted.m < _LEAST)
     told = [each for each in told if each.name not in valueless]
     base = {each.name: columns[each.name].of_all for each in told}
+    tell("the tails of the assumptions")
+    moves = {name: found for name in stressed if (found := _moves(run, name, share / 100.0, told, columns)) is not None}
+    chosen = {each.name: {*sorted(moves, key=lambda name: -moves[name][each.name])[:MOST]} for each in told}
     tails: list[Tail] = []
-    still: list[str] = []
-    for name in stressed:
+    for name in moves:
         tell(name)
-        found = [_tail(run, name, share / 100.0, is_high, told, columns) for is_high in (False, True)]
-        if any(each is None for each in found):
-            still.append(name)
-        else:
-            tails += [each for each in found if each is not None]
+        here = [each for each in told if name in chosen[each.name]]
+        tails += [_tail(run, name, share / 100.0, is_high, here, columns) for is_high in (False, True) if here]
     tell("what distinguishes answers")
+    inputs = _Inputs(run, tuple(moves))
     parts = [
-        _scenario(run, columns[each.name], words, wanted, [n for n in stressed if n not in still])
+        _scenario(inputs, columns[each.name], words, wanted)
         for each in told
         if not columns[each.name].is_counted
         for words, wanted in ranges
@@ -297,7 +306,8 @@ def stress(
         base=base,
         tails=tuple(tails),
         scenarios=tuple(parts),
-        still=tuple(still),
+        still=tuple(name for name in stressed if name not in moves),
+        untold=left_out,
         valueless=valueless,
     )
 
@@ -489,24 +499,65 @@ class _Some:
         return moves
 
 
+def _limit(x: Floats, share: float, is_high: bool) -> float:
+    return float(np.quantile(x, 1.0 - share if is_high else share, method="higher" if is_high else "lower"))
+
+
+def _moves(
+    run: RunResult, name: str, share: float, told: Sequence[Forecast], columns: dict[str, _Answers]
+) -> dict[str, float] | None:
+    """Return by how much the tails of an assumption move the mean of each forecast; None where it has no tails."""
+    x = np.asarray(run.inputs[name])
+    sides = [x >= (limit := _limit(x, share, True)), x <= (lower := _limit(x, share, False))]
+    if limit == lower or any(not _LEAST <= np.count_nonzero(inside) < x.size for inside in sides):
+        return None
+    found = {}
+    for each in told:
+        answers = columns[each.name].accepted
+        means = [answers.values[inside[answers.trials]] for inside in sides]
+        whole = float(answers.values.mean())
+        found[each.name] = max((abs(float(part.mean()) - whole) for part in means if part.size), default=0.0)
+    return found
+
+
 def _tail(
     run: RunResult, name: str, share: float, is_high: bool, told: Sequence[Forecast], columns: dict[str, _Answers]
-) -> Tail | None:
-    """Restrict an assumption to a tail; None where it has hardly more than one value."""
+) -> Tail:
+    """Restrict an assumption to a tail."""
     x = np.asarray(run.inputs[name])
-    limit = float(np.quantile(x, 1.0 - share if is_high else share, method="higher" if is_high else "lower"))
+    limit = _limit(x, share, is_high)
     low, high = (limit, math.inf) if is_high else (-math.inf, limit)
     some = _Some.of(x, low, high, moving=(is_high, not is_high))
-    count = int(np.count_nonzero(some.inside))
-    if count == x.size or count < _LEAST:
-        return None
     parts = {each.name: part for each in told if (part := columns[each.name].part(some)) is not None}
-    return Tail(name, is_high, limit, count, parts)
+    return Tail(name, is_high, limit, int(np.count_nonzero(some.inside)), parts)
 
 
-def _scenario(run: RunResult, answers: _Answers, words: str, wanted: _Range, names: Sequence[str]) -> Scenario:
+class _Inputs:
+    """The draws of assumptions in the accepted trials, each with its median and its standard deviation.
+
+    Args:
+        run: that has them.
+        names: of the assumptions.
+    """
+
+    def __init__(self, run: RunResult, names: tuple[str, ...]) -> None:
+        self._run, self.names, self.accepted = run, names, run.accepted
+        self._known: dict[str, tuple[Statistic, float]] = {}
+
+    def of(self, name: str, rows: NDArray[np.int64]) -> tuple[Floats, Statistic, float]:
+        """Return the draws in some accepted trials `(m,)`, their median, and their standard deviation."""
+        x = np.asarray(self._run.inputs[name])
+        if rows.size < self.accepted:
+            x = x[rows]
+            return x, quantile_of(Accepted(rows, x), 0.5), float(x.std(ddof=1))
+        if name not in self._known:
+            self._known[name] = quantile_of(Accepted(rows, x), 0.5), float(x.std(ddof=1))
+        return x, *self._known[name]
+
+
+def _scenario(draws: _Inputs, answers: _Answers, words: str, wanted: _Range) -> Scenario:
     """Find the inputs whose medians in some trials of a forecast differ from those in all."""
-    column, values = np.full(run.accepted, np.nan), answers.accepted.values
+    column, values = np.full(draws.accepted, np.nan), answers.accepted.values
     column[answers.accepted.trials] = values
     low = -math.inf if wanted[0] is None else wanted[0].of(values)
     high = math.inf if wanted[1] is None else wanted[1].of(values)
@@ -517,20 +568,26 @@ def _scenario(run: RunResult, answers: _Answers, words: str, wanted: _Range, nam
     count = int(np.count_nonzero(some.inside))
     inputs: list[Moved] = []
     if _LEAST <= count < answers.accepted.m:
-        inputs = [each for name in names if (each := _moved(run, name, answers, some)) is not None]
+        shifts = {name: _shift(draws, name, answers, some) for name in draws.names}
+        inputs = [_moved(draws, name, answers, some) for name in sorted(shifts, key=lambda name: -shifts[name])[:MOST]]
         inputs.sort(key=lambda each: -abs(each.shift.value))
     return Scenario(answers.forecast.name, words, low, high, count, tuple(inputs))
 
 
-def _moved(run: RunResult, name: str, answers: _Answers, some: _Some) -> Moved | None:
+def _shift(draws: _Inputs, name: str, answers: _Answers, some: _Some) -> float:
+    """Return how far the median of an input moves, in standard deviations."""
     rows = answers.accepted.trials
-    x = np.asarray(run.inputs[name])[rows]
-    spread = float(x.std(ddof=1))
-    if not spread:
-        return None
+    x, median, spread = draws.of(name, rows)
+    return abs(float(np.median(x[some.inside[rows]])) - median.estimate.value) / spread if spread else 0.0
+
+
+def _moved(draws: _Inputs, name: str, answers: _Answers, some: _Some) -> Moved:
+    rows = answers.accepted.trials
+    x, all_of_them, spread = draws.of(name, rows)
+    spread = spread or 1.0
     inside = some.inside[rows]
-    whole, part = Accepted(rows, x), Accepted(rows[inside], x[inside])
-    all_of_them, within = quantile_of(whole, 0.5), quantile_of(part, 0.5)
+    part = Accepted(rows[inside], x[inside])
+    within = quantile_of(part, 0.5)
     median, shift = _against(within, all_of_them, inside, some.beside(part.trials, rows))
     error = None if shift.error is None else shift.error / spread
     moved = Estimate(shift.value / spread, error, n=shift.n)

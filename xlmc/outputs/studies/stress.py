@@ -20,9 +20,6 @@ __all__ = ["stress_report"]
 _DRAWN: Final = 12
 """Assumptions of a chart."""
 
-_ROWS: Final = 20
-"""Assumptions of a table; JSON has all."""
-
 _TOLD: Final = 3
 """Inputs that a sentence names."""
 
@@ -120,7 +117,7 @@ def _blocks(found: Stressed) -> Iterator[Block]:
         ranked = found.ranked(forecast.name)
         if not ranked:
             continue
-        yield _table(found, forecast, ranked[:_ROWS])
+        yield _table(found, forecast, ranked)
         figure = _chart(found, forecast, ranked[:_DRAWN])
         if figure is not None:
             yield figure
@@ -205,7 +202,7 @@ def _of_scenario(found: Stressed, scenario: Scenario) -> Table:
     from xlmc.outputs.document.parts import Table
 
     heads = ("Assumption", "Median", "In these trials", "Moved by, SD", "Lies at", "By chance", "Distinguishes")
-    rows = tuple(_moved_row(found, each) for each in scenario.inputs[:_ROWS])
+    rows = tuple(_moved_row(found, each) for each in scenario.inputs)
     title = f"Inputs where {scenario.forecast} is {scenario.words}{_limits(found, scenario)}"
     return Table(title, heads, rows, (1, 2, 3, 4, 5))
 
@@ -237,14 +234,16 @@ def _chance(chance: float) -> str:
 
 
 def _meaning(found: Stressed) -> Iterator[str]:
+    from xlmc.analysis.studies.stress import MOST
     from xlmc.montecarlo.statistics.number_text import count_text
 
     share = _percent(found.share)
     if found.still:
         yield f"Of hardly more than one value in the accepted trials, and so without tails: {'; '.join(found.still)}."
-    hidden = len(found.tails) // 2 - _ROWS
-    if hidden > 0:
-        yield f"Tables have the {_ROWS} assumptions that move most; {count_text(hidden)} more are in the JSON (--json)."
+    if len(found.run.model.live) > MOST:
+        yield f"Of more than {MOST} assumptions each forecast has the {MOST} that move it most."
+    if found.untold:
+        yield f"Told of the first {MOST} forecasts; {count_text(found.untold)} more can be named (--forecast)."
     filtered = "accepted " if found.run.accepted < found.run.trials else ""
     yield (
         f"A tail: the trials in which the assumption is among the lowest, or highest, {share} of its {filtered}values. "

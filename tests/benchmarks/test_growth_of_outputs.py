@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import os
+import signal
+
 import growth_of_outputs as growth
 import pytest
 
@@ -41,3 +44,30 @@ def test_the_slope_is_of_the_last_decade():
     points = [{"size": size, "run": {"seconds": size**2 / 1e4, "megabytes": 1.0}} for size in (10, 100, 1_000)]
     assert "| 2.00 |" in growth.table({"cells": points}).splitlines()[-1]
     assert "no answer" in growth.table({"cells": [{"size": 3, "absent": "no answer within 1 s"}]})
+
+
+@pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+@pytest.mark.skipif(not hasattr(signal, "SIGKILL"), reason="this system kills no process by a signal")
+def test_workers_of_which_one_is_killed_give_the_same_bits_with_a_thousand_assumptions(tmp_path):
+    """The largest row of the table by assumptions, on a Dask cluster of processes of this machine."""
+    distributed = pytest.importorskip("distributed")
+    about = {key: growth.MIDDLE[key] for key in ("forecasts", "cells", "rejected")}
+    growth.write_book(tmp_path / "book.xlsx", assumptions=1_000, **about)
+    model, killed = xlmc.load(tmp_path / "book.xlsx"), []
+    trials = 8 * growth.MIDDLE["trials"]
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0") as cluster:
+
+        def kill(standing):
+            if not killed:
+                killed.append(cluster.workers[0].pid)
+                os.kill(killed[0], signal.SIGKILL)
+
+        run = model.simulate(trials, seed=1, scheduler=cluster.scheduler_address, progress=kill)
+    alone = model.simulate(trials, seed=1)
+    assert len(killed) == 1
+    assert run.trials == alone.trials == trials
+    for kind in ("forecasts", "inputs"):
+        one, other = getattr(run._run, kind), getattr(alone._run, kind)
+        assert [*one] == [*other]
+        assert all(one[name].tobytes() == other[name].tobytes() for name in one)

@@ -17,6 +17,7 @@ from simulated import simulated
 from xlmc.analysis.results.record import make_record
 from xlmc.api import Simulation
 from xlmc.errors import SimulationError, WorkbookError
+from xlmc.montecarlo.columns import on_disk
 from xlmc.montecarlo.model.loading import load
 from xlmc.outputs.extract import safe_heading
 
@@ -57,6 +58,30 @@ def test_it_reads_back_as_the_frame_to_the_last_bit(model, tmp_path, ending, rea
         expected = expected.rename(columns=safe_heading)
     assert expected["inverse"].isna().any()
     pandas.testing.assert_frame_equal(read(tmp_path / f"trials.{ending}"), expected, check_exact=True)
+
+
+@pytest.mark.parametrize("reader", ["pandas", "polars"])
+@pytest.mark.usefixtures("few_at_once")
+def test_trials_on_disk_go_to_parquet_by_parts_that_others_read_one_by_one(model, tmp_path, reader):
+    frames = pytest.importorskip(reader)
+    run = simulated(model, 4_000, in_memory=1 << 12)
+    assert on_disk(run.forecasts["area"])
+    path = tmp_path / "trials.parquet"
+    Simulation(run).extract(path)
+    file = parquet.ParquetFile(path)
+    sizes = [file.metadata.row_group(part).num_rows for part in range(file.num_row_groups)]
+    assert sizes == [PART] * (run.accepted // PART) + [run.accepted % PART]
+    columns = {"Trial": run.trial_index, **run.inputs, **run.forecasts}
+    start = 0
+    for part, size in enumerate(sizes):
+        if reader == "pandas":
+            found = file.read_row_group(part).to_pandas()
+        else:
+            found = frames.scan_parquet(path).slice(start, size).collect()
+        for name, values in columns.items():
+            read = np.asarray(found[name].to_numpy(), values.dtype)
+            np.testing.assert_array_equal(read, values[start : start + size], strict=True)
+        start += size
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet"])

@@ -5,7 +5,7 @@ column is an ordinary array to whoever reads it. Parquet is a format to hand res
 """
 
 from xlmc.montecarlo.columns.column_store import Columns, ColumnStore, Folder, free_disk, on_disk, release
-from xlmc.montecarlo.columns.passes import PART, RUN, ascending, numbers, pairwise_sum, parts, passed, picked
+from xlmc.montecarlo.columns.passes import PART, RUN, ascending, holds_nan, numbers, pairwise_sum, parts, passed, picked
 
 __all__ = [
     "PART",
@@ -15,6 +15,7 @@ __all__ = [
     "Folder",
     "ascending",
     "free_disk",
+    "holds_nan",
     "numbers",
     "on_disk",
     "pairwise_sum",

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo.columns.column_store import Folder, on_disk, release
 
-__all__ = ["PART", "RUN", "ascending", "numbers", "pairwise_sum", "parts", "passed", "picked"]
+__all__ = ["PART", "RUN", "ascending", "holds_nan", "numbers", "pairwise_sum", "parts", "passed", "picked"]
 
 PART = 65_536
 """Values looked at together: a few arrays of so many fit in the processor's cache."""
@@ -84,9 +84,14 @@ def picked(values: NDArray[Any], indices: NDArray[np.intp]) -> NDArray[Any]:
     return found
 
 
+def holds_nan(part: NDArray[np.float64]) -> bool:
+    """Whether one of the values, which are some, is NaN: their least is then, which is faster to ask."""
+    return bool(np.isnan(part.min()))
+
+
 def numbers(values: NDArray[np.float64]) -> NDArray[np.float64]:
     """`(n,)` values without NaN, in their order: the column itself where it has none; on disk where it was on disk."""
-    if not any(np.isnan(part).any() for part in parts(values)):
+    if not any(holds_nan(part) for part in parts(values)):
         return values
     if not on_disk(values):
         return values[~np.isnan(values)]

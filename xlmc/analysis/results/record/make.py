@@ -32,7 +32,7 @@ from xlmc.analysis.results.record.settings_table import settings_section
 from xlmc.analysis.results.statements.in_words import errors_text, generator_text, method_text
 from xlmc.excel.own_functions import OwnFunctions, the_same_functions
 from xlmc.excel.workbook.inject import original_hash
-from xlmc.montecarlo.columns import parts
+from xlmc.montecarlo.columns import holds_nan, parts
 from xlmc.montecarlo.definitions.feeds import Feed
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.interruption import checkpoint
@@ -451,8 +451,7 @@ def _known_fingerprint(simulation: RunResult) -> str:
 def _update(digest: hashlib._Hash, values: NDArray[np.float64]) -> None:
     for part in parts(values):
         checkpoint()
-        missing = np.isnan(part)
-        same = np.where(missing, np.nan, part) if missing.any() else part
+        same = np.where(np.isnan(part), np.nan, part) if holds_nan(part) else part
         digest.update(same.astype("<f8", copy=False).data)
 
 

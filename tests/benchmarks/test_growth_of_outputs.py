@@ -55,7 +55,7 @@ def test_workers_of_which_one_is_killed_give_the_same_bits_with_a_thousand_assum
     about = {key: growth.MIDDLE[key] for key in ("forecasts", "cells", "rejected")}
     growth.write_book(tmp_path / "book.xlsx", assumptions=1_000, **about)
     model, killed = xlmc.load(tmp_path / "book.xlsx"), []
-    trials = 8 * growth.MIDDLE["trials"]
+    trials = 4 * growth.MIDDLE["trials"]
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=":0") as cluster:
 
         def kill(standing):

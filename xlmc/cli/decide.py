@@ -71,7 +71,7 @@ def decide(
         found = study.decide(model, table, trials=trials, seed=seed, engine=engine, jobs=jobs, tell=tell)
     report = decide_report(found)
     written = give_out(report, files.writers(report), as_json, [f"{report.below}.", *report.blocks])
-    conclude(written, found.run, _doubts(found))
+    conclude(written, found.run, _doubts(found), found.ended)
 
 
 def _doubts(found: Decided) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+import signal
 
 import numpy as np
 import pytest
@@ -170,3 +171,18 @@ def test_what_cannot_be_asked_is_refused(book, tmp_path):
     function = xlmc.model(lambda x: {"y": x}, {"x": xlmc.Uniform(0, 1)}, ["y"])
     with pytest.raises(DefinitionError, match="defines no decision"):
         xlmc.decide(function)
+
+
+def test_a_table_that_is_interrupted_tells_what_was_run(book):
+    def tell(what):
+        if what.startswith("Order = 40"):
+            signal.raise_signal(signal.SIGINT)
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        found = xlmc.decide(xlmc.load(book(ORDER)), trials=500, tell=tell)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert [each.values for each in found.combinations] == [(20,), (30,), (40,)]
+    assert found.ended == "it was interrupted after 4 of about 6 steps"
+    assert "Combinations that are not in it were not run." in str(found)

@@ -15,6 +15,7 @@ from typing import Final, TypedDict
 from xlmc.analysis.studies.comparison.variations import names_of
 from xlmc.analysis.studies.scenario_answers import ForecastAnswer, ScenarioAnswers, answers_of, model_of, run_scenario
 from xlmc.analysis.studies.shown import Shown
+from xlmc.analysis.studies.steps import Steps
 from xlmc.errors import DefinitionError, SimulationError, XlmcError
 from xlmc.montecarlo.definitions.definitions import Decision
 from xlmc.montecarlo.definitions.scenarios import Scenario, Typed
@@ -105,6 +106,7 @@ class Decided(Shown):
         decisions: those that were varied.
         combinations: of their values, the first decision's changing slowest.
         impossible: values -> why the workbook cannot be run with them.
+        ended: why it ended before all combinations were run; empty if it did not.
     """
 
     run: RunResult
@@ -112,6 +114,7 @@ class Decided(Shown):
     decisions: tuple[Decision, ...]
     combinations: tuple[Combination, ...]
     impossible: dict[tuple[float, ...], str]
+    ended: str = ""
 
     def does_matter(self, forecast: str) -> bool:
         """Whether a number of a forecast's answer, which tables show, is not that of the workbook as it is with every
@@ -195,21 +198,24 @@ def decide(
             f"The decisions have {count_text(count)} combinations, and a table at most {count_text(MOST_COMBINATIONS)}"
         )
         raise SimulationError(message, hint="Give larger steps in xlmc_decisions, or fewer decisions")
-    tell = tell or (lambda _: None)
-    tell("the workbook as it is")
-    run = simulate(model, trials=trials, seed=seed, sampling=sampling, engine=engine, jobs=jobs)
     found: list[Combination] = []
     impossible: dict[tuple[float, ...], str] = {}
-    for values in product(*(each.values for each in decisions)):
-        scenario = _scenario(decisions, values)
-        tell(scenario.name)
-        try:
-            answers = answers_of(run_scenario(model_of(model, scenario), run, jobs=jobs), scenario, run)
-        except XlmcError as error:
-            impossible[values] = str(error).partition("\n")[0]
-        else:
-            found.append(Combination(values, answers))
-    return Decided(run, answers_of(run, None, run), decisions, tuple(found), impossible)
+    with Steps(tell) as steps:
+        steps.expect(count + 1)
+        steps.begin("the workbook as it is")
+        run = simulate(model, trials=trials, seed=seed, sampling=sampling, engine=engine, jobs=jobs)
+        steps.can_end()
+        for values in steps.each(product(*(each.values for each in decisions))):
+            scenario = _scenario(decisions, values)
+            steps.begin(scenario.name)
+            try:
+                answers = answers_of(run_scenario(model_of(model, scenario), run, jobs=jobs), scenario, run)
+            except XlmcError as error:
+                impossible[values] = str(error).partition("\n")[0]
+            else:
+                found.append(Combination(values, answers))
+        ended = steps.why_ended
+    return Decided(run, answers_of(run, None, run), decisions, tuple(found), impossible, ended)
 
 
 def _chosen(model: CompiledModel, names: Iterable[str]) -> tuple[Decision, ...]:

@@ -45,6 +45,7 @@ _MEANING = (
 
 def _sentences(found: Decided) -> Iterator[str]:
     from xlmc.analysis.studies.decisions import of_forecast
+    from xlmc.analysis.studies.steps import ended_early
 
     names = " and ".join(each.name for each in found.decisions)
     same = [each.name for each in found.run.model.forecasts if not found.does_matter(each.name)]
@@ -76,6 +77,8 @@ def _sentences(found: Decided) -> Iterator[str]:
             yield f"{text}; that is {ahead} {side} the next, {best.next.answers.name}{doubt}."
         if losing:
             yield _losing_text(losing, forecast.name)
+    if found.ended:
+        yield ended_early("table", found.ended, "Combinations that are not in it were not run.")
     if same:
         are = "are" if len(found.decisions) > 1 else "is"
         yield f"Whatever {names} {are}, these stay as they are: {'; '.join(same)}."
@@ -185,6 +188,7 @@ def _as_json(found: Decided) -> dict[str, object]:
             for each in found.combinations
         ],
         "best": [_best_json(found, each.name) for each in run.model.forecasts],
+        "ended_early": found.ended or None,
         "impossible": [
             {"values": _contents(found.decisions, values), "why": why} for values, why in found.impossible.items()
         ],

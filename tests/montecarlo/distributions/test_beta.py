@@ -58,8 +58,8 @@ def test_the_upper_tail_keeps_its_digits():
         ((3, 2, 1, 1), "low", "Low (3) is above High (2)"),
         ((0, 1, 0, 1), "alpha", "Alpha (0) must be above 0"),
         ((0, 1, 1, -2), "beta", "Beta (-2) must be above 0"),
-        ((0, 1, 2e6, 1), "alpha", "Alpha (2000000) must be at most 1000000"),
-        ((0, 1, 1, 2e6), "beta", "Beta (2000000) must be at most 1000000"),
+        ((0, 1, 2e6, 1), "alpha", "Alpha (2,000,000) must be at most 1,000,000"),
+        ((0, 1, 1, 2e6), "beta", "Beta (2,000,000) must be at most 1,000,000"),
     ],
 )
 def test_bad_parameters(params, key, message):

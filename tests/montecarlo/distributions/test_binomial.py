@@ -63,7 +63,7 @@ def test_the_quantile_is_the_first_that_reaches(p, n, k):
         ((30, 5), "probability", "Probability (30) must be from 0 to 1"),
         ((0.3, -1), "trials", "Trials (-1) must be a whole number from 0 to 1,000,000,000"),
         ((0.3, 2.5), "trials", "Trials (2.5) must be a whole number from 0 to 1,000,000,000"),
-        ((0.3, 2e9), "trials", "Trials (2000000000) must be a whole number from 0 to 1,000,000,000"),
+        ((0.3, 2e9), "trials", "Trials (2,000,000,000) must be a whole number from 0 to 1,000,000,000"),
     ],
 )
 def test_bad_parameters(params, key, message):

@@ -36,7 +36,7 @@ def test_the_quantile_is_the_first_that_reaches(low, width, k):
         ((6, 1), "low", "Low (6) is above High (1)"),
         ((0.5, 6), "low", "Low (0.5) must be a whole number from -1,000,000,000 to 1,000,000,000"),
         ((1, 6.5), "high", "High (6.5) must be a whole number from -1,000,000,000 to 1,000,000,000"),
-        ((-2e9, 6), "low", "Low (-2000000000) must be a whole number from -1,000,000,000 to 1,000,000,000"),
+        ((-2e9, 6), "low", "Low (-2,000,000,000) must be a whole number from -1,000,000,000 to 1,000,000,000"),
     ],
 )
 def test_bad_parameters(params, key, message):

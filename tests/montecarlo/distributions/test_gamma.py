@@ -51,7 +51,7 @@ def test_the_upper_tail_keeps_its_digits():
     [
         ((0, -1, 1), "scale", "Scale (-1) must be above 0"),
         ((0, 1, -1), "shape", "Shape (-1) must be above 0"),
-        ((0, 1, 1e7), "shape", "Shape (10000000) must be at most 1000000"),
+        ((0, 1, 1e7), "shape", "Shape (10,000,000) must be at most 1,000,000"),
     ],
 )
 def test_bad_parameters(params, key, message):

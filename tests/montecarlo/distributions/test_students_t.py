@@ -55,7 +55,7 @@ def test_far_values_raise_no_flag(clean):
     [
         ((0, -1, 1), "scale", "Scale (-1) must be above 0"),
         ((0, 1, 0), "degrees", "Degrees of freedom (0) must be above 0"),
-        ((0, 1, 1e7), "degrees", "Degrees of freedom (10000000) must be at most 1000000"),
+        ((0, 1, 1e7), "degrees", "Degrees of freedom (10,000,000) must be at most 1,000,000"),
     ],
 )
 def test_bad_parameters(params, key, message):

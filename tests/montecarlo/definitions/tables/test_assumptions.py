@@ -60,8 +60,8 @@ MISTAKES = [
     ({"Inputs!D2": ("=1/0", ErrorCode.DIV0)}, "Inputs!D2", "Low holds the error #DIV/0!", "what it depends on"),
     ({"Inputs!D2": ("=A1", "Name")}, "Inputs!D2", "Low holds the text 'Name'", "Type a number"),
     # parameters that break a rule
-    ({"Inputs!D2": 7000}, "Inputs!D2", "Low (7000) is above High (6861)", "Exchange the two"),
-    ({"Inputs!D2": ("=7*1000", 7000.0)}, "Inputs!D2", "Low (7000) is above High (6861)", "Exchange the two"),
+    ({"Inputs!D2": 7000}, "Inputs!D2", "Low (7,000) is above High (6,861)", "Exchange the two"),
+    ({"Inputs!D2": ("=7*1000", 7000.0)}, "Inputs!D2", "Low (7,000) is above High (6,861)", "Exchange the two"),
     ({"Inputs!D2": 1e200}, "Inputs!D2", "Low (1e+200) must be a number between -1E150 and 1E150", "Correct"),
     ({"Inputs!H4": -1}, "Inputs!H4", "Std dev (-1) must be above 0", "set Frozen to TRUE"),
     ({"Inputs!N5": 0.9}, "Inputs!N5", "Low likeliest (0.9) is above High likeliest (0.85)", "Exchange the two"),
@@ -70,8 +70,18 @@ MISTAKES = [
     # cutoffs
     ({"Inputs!I4": 3}, "Inputs!I4", "Lower cutoff (3) is not below Upper cutoff (2.5)", "Exchange the two"),
     ({"Inputs!I4": "none"}, "Inputs!I4", "Lower cutoff holds the text 'none'", "Type a number"),
-    ({"Inputs!J2": 6000}, "Inputs!J2", "Upper cutoff (6000) leaves nothing of the distribution", "from 6661 to 6861"),
-    ({"Inputs!I2": 7000}, "Inputs!I2", "Lower cutoff (7000) leaves nothing of the distribution", "from 6661 to 6861"),
+    (
+        {"Inputs!J2": 6000},
+        "Inputs!J2",
+        "Upper cutoff (6,000) leaves nothing of the distribution",
+        "from 6,661 to 6,861",
+    ),
+    (
+        {"Inputs!I2": 7000},
+        "Inputs!I2",
+        "Lower cutoff (7,000) leaves nothing of the distribution",
+        "from 6,661 to 6,861",
+    ),
     # the assumption cell
     ({"Inputs!B2": ("=6000+761", 6761.0)}, "Inputs!B2", "The assumption cell holds a formula", "Paste Special"),
     ({"Inputs!B1": (SPILL, "Value")}, "Inputs!B2", "The assumption cell holds a formula", "Paste Special"),
@@ -164,10 +174,10 @@ class TestParameters:
 
 
 NOTICES = [
-    ({"Inputs!D2": 6761, "Inputs!E2": 6761}, "Inputs!D2", "Low and High are both 6761: the assumption does not vary"),
+    ({"Inputs!D2": 6761, "Inputs!E2": 6761}, "Inputs!D2", "Low and High are both 6,761: the assumption does not vary"),
     ({"Inputs!B2": None}, "Inputs!B2", "The assumption cell is blank, so there is no base case"),
-    ({"Inputs!B2": 7000}, "Inputs!B2", "The base case (7000) lies outside the distribution (6661 to 6861)"),
-    ({"Inputs!J2": 6700}, "Inputs!B2", "The base case (6761) lies outside the distribution (6661 to 6700)"),
+    ({"Inputs!B2": 7000}, "Inputs!B2", "The base case (7,000) lies outside the distribution (6,661 to 6,861)"),
+    ({"Inputs!J2": 6700}, "Inputs!B2", "The base case (6,761) lies outside the distribution (6,661 to 6,700)"),
     ({"Inputs!P1": "Sources"}, "Inputs!P1", "The column 'Sources' is kept as a note only: did you mean Source?"),
 ]
 

@@ -57,7 +57,7 @@ def test_the_quantile_is_the_first_that_reaches(rate, k):
     assert x == 0 or POISSON.cdf(x - 1, rate) < u
 
 
-@pytest.mark.parametrize(("rate", "shown"), [(-1, "-1"), (-4, "-4"), (2e9, "2000000000")])
+@pytest.mark.parametrize(("rate", "shown"), [(-1, "-1"), (-4, "-4"), (2e9, "2,000,000,000")])
 def test_bad_rates(rate, shown):
     fault = POISSON.fault(rate)
     assert (fault.key, fault.message) == ("rate", f"Rate ({shown}) must be from 0 to 1,000,000,000")

@@ -124,3 +124,13 @@ def test_what_is_not_there(book, model):
     with pytest.raises(DefinitionError, match=r"In the scenario 'bad': a: Low \(2\) is above High \(1\)"):
         model_of(model, Scenario("bad", (Range("a", 2, 1),)))
     assert model_of(model, "NARROW").assumptions[0].parameters == {"low": 0.2, "high": 0.6}
+
+
+def test_a_yes_no_answer_that_a_scenario_makes_certain_stays_a_share(book):
+    plain = book({"A1": 0.5, "B1": "=A1<0.4"}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"low": "B1"})
+    scenarios = (Scenario("held", (Frozen("a", 0.25),)), Scenario("high", (Frozen("a", 0.75),)))
+    model = CompiledModel(plain.workbook, replace(plain.definitions, scenarios=scenarios), plain.path)
+    own, *held = [each.forecasts[0] for each in answers(model)]
+    assert [each.has_range for each in (own, *held)] == [False] * 3
+    assert [each.mean.value for each in held] == [1.0, 0.0]
+    assert [each.differences["mean"].value for each in held] == pytest.approx([1.0 - own.mean.value, -own.mean.value])

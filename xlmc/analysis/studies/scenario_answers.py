@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.errors import DefinitionError, SimulationError, XlmcError
+from xlmc.montecarlo.columns import numbers
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.scenarios import Scenario, Tabulated
@@ -286,7 +287,10 @@ def _forecast(run: RunResult, base: RunResult, forecast: Forecast, differs: bool
     above = None if forecast.threshold is None else result.probability_above(forecast.threshold)
     found = {"mean": result.mean, "low": low, "high": high} | ({} if above is None else {"above": above})
     changes = _differences(run, base, forecast, found, paired=paired) if differs else {}
-    return ForecastAnswer(forecast, result.mean, low, high, above, changes, result.form, text)
+    form = result.form
+    if base.results[forecast.name].form.kind is Kind.YES_NO and np.isin(numbers(result.column), (0.0, 1.0)).all():
+        form = base.results[forecast.name].form  # a formula that is the same in all trials says no kind
+    return ForecastAnswer(forecast, result.mean, low, high, above, changes, form, text)
 
 
 def _differences(

@@ -32,6 +32,8 @@ __all__ = ["blocks_html", "estimate_html", "number", "picture_html", "share_html
 _TEXT_WIDTH = 160.0
 """Millimetres up to which a picture is as wide as the text of a page."""
 _LOOKS = {"text": None, "small": "remark"}
+_CLASSES = {"answer": "number wraps", "range": "number wraps range"}
+"""Of numbers that may have their error in a line of its own, where a table has no room beside them."""
 
 
 def blocks_html(blocks: Iterable[Block]) -> Html:
@@ -118,7 +120,7 @@ def _cell(cell: Content, index: int, at_right: frozenset[int]) -> Html:
     if isinstance(cell, Drawing | Chart):
         return element("td", picture_html(cell, "shape"))
     if isinstance(cell, Measured):
-        return element("td", _measured_html(cell), class_="number range" if cell.look == "range" else "number")
+        return element("td", _measured_html(cell), class_=_CLASSES.get(cell.look, "number"))
     if isinstance(cell, Shown):
         if index == 0 and isinstance(cell.value, str):
             return element("th", cell.value, scope="row")
@@ -133,7 +135,11 @@ def _measured_html(cell: Measured) -> Html:
     """Return a number and its error, which carries its full value."""
     if cell.found is None or not math.isfinite(cell.found.value):
         return element("span", cell.text)
-    return number(cell.found.value, cell.text)
+    value, sign, error = cell.text.partition(" ± ")
+    if not error or cell.look not in _CLASSES:
+        return number(cell.found.value, cell.text)
+    parts = element("span", value), " ", element("span", f"{sign.strip()} {error}")
+    return element("data", *parts, value=plain_text(cell.found.value))
 
 
 def _lines(text: str) -> Iterable[Html | str]:

@@ -60,7 +60,7 @@ def _charts(found: ForecastSensitivity, whole: Sensitivities) -> Iterator[Html]:
 
 
 def _figure(chart: Chart, caption: str) -> Html:
-    return element("figure", picture_html(chart), element("figcaption", caption))
+    return element("figure", picture_html(chart), element("figcaption", caption) if caption else EMPTY)
 
 
 def _tables(found: ForecastSensitivity, whole: Sensitivities) -> Iterator[Html]:
@@ -106,6 +106,6 @@ def _answer_charts(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivi
         each = forecasts[slope.forecast]
         form = replace(each.form, report_to=None)
         alike.setdefault((each.change_units, form if any(form.affixes) else PLAIN), []).append(index)
-    for (unit, form), indexes in alike.items():
+    for number, ((unit, form), indexes) in enumerate(alike.items()):
         shown = forecasts[limit.slopes[indexes[0]].forecast].change_form if form != PLAIN else PLAIN
-        yield _figure(limit_chart(limit, indexes, unit, shown), moved_caption(limit))
+        yield _figure(limit_chart(limit, indexes, unit, shown), "" if number else moved_caption(limit))

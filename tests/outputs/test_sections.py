@@ -10,10 +10,12 @@ from openpyxl.worksheet.table import Table as ExcelTable
 
 import xlmc
 from xlmc.cli.simulate import show_run
+from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs import save
 from xlmc.outputs.document import SECTIONS, Wanted, document_bytes
 from xlmc.outputs.document.build import build
 from xlmc.outputs.document.cells import Shown
+from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Bar, Bars, Bullets, Chart, Code, Figure, Line, Lines, Paragraph, Table
 from xlmc.outputs.document.sections import OUTPUTS, Section
 from xlmc.outputs.notebook import run_html
@@ -27,6 +29,8 @@ def blocks(_):
     yield Bullets(("a <b>",))
     yield Code("xlmc moon")
     yield Table("", ("Kind", "Full moons"), (("seen", Shown(1234.5, "#,##0.0")),), caption="Phase of the night")
+    rows = (("new", Measured(Estimate(0.5, 0.1), "share"), "dark"), ("old", "", "lost"))
+    yield Table("", ("Moon", "Seen", "Because"), rows, spans=(1, 1, 3))
     yield Figure(Chart("", "Share", Bars((Bar("a", ((0.0, 1.0, "dark"),)),)), "a bar"), "Phase of the night")
     yield Figure(Chart("", "x", Lines((Line("a", ((0.0, 1.0), (1.0, 2.0))),), "y"), "a line"), "Phase of the night")
 
@@ -75,6 +79,13 @@ def test_it_is_a_sheet(case_run, tmp_path):
     texts = "\n".join(map(str, cells))
     assert [each for each in SAID if each != "1,234.5" and each not in texts] == []
     assert 1234.5 in cells
+    rows = {row[0]: row[1:4] for row in book["Moon phase"].iter_rows(values_only=True)}
+    assert (rows["Moon"], rows["new"], rows["old"]) == (
+        ("Seen", "±", "Because"),
+        (0.5, 0.1, "dark"),
+        (None, None, "lost"),
+    )
+    assert "D13:F13" in {str(each) for each in book["Moon phase"].merged_cells.ranges}
     assert len(book["Moon phase"]._charts) == 2
 
 

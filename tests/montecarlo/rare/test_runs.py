@@ -237,9 +237,9 @@ def test_the_command_line_tells_what_was_done(run, capsys):
 
 
 def test_the_page_does_not_take_kept_trials_for_a_share_of_the_plain_ones(run):
-    from xlmc.outputs.page.answers import answers
+    from xlmc.outputs.page.sheet_sections import answer
 
-    words = str(answers(run))
+    words = str(answer(run))
     assert f"{run.rare.evaluations:,} combinations of values" in words
     assert "2,000 that pass all filters were kept" in words
     assert f"{run.trials:,} combinations" not in words

@@ -388,7 +388,7 @@ def test_a_table_is_copied_as_a_table(at_rest):
         "window.copied = null;"
         "document.addEventListener('copy', () => { copied = String(getSelection()); }, { capture: true })"
     )
-    browser.find_element("css selector", ".answers button.copy").click()
+    browser.find_element("css selector", "#answer button.copy").click()
     lines = [line for line in browser.execute_script("return copied").splitlines() if line.strip()]
     assert lines[0].split("\t")[0] == "Forecast"
     assert any(line.startswith("area\t") for line in lines)

@@ -38,6 +38,8 @@ _LONGEST: Final = 255
 """Characters of a property of the file, the format's limit."""
 
 _BODY, _SMALL, _CELL = 10.5, 9.0, 8.5
+_BESIDE: Final = 50
+"""Twentieths of a point beside the text of a cell."""
 
 
 def docx_bytes(drawn: Document) -> bytes:
@@ -161,6 +163,7 @@ class _Writer:
         made = self._file.add_table(rows=len(lines), cols=table.columns)
         made.style = "Table Grid"
         made.autofit = False
+        _narrow_cells(made)
         whole, at_right = sum(table.relative_widths), table.at_right
         widths = [Mm(self._room * width / whole) for width in table.relative_widths]
         for column, width in zip(made.columns, widths, strict=True):
@@ -171,11 +174,11 @@ class _Writer:
             leads = number in (0, bool(table.heads), len(lines) - 2) and number < len(lines) - 1
             for index, (cell, content) in enumerate(zip(row.cells, contents, strict=True)):
                 cell.width = widths[index]
-                self._cell(cell.paragraphs[0], content, bold=heads, right=index in at_right)
+                self._cell(cell.paragraphs[0], content, table.letters, bold=heads, right=index in at_right)
                 cell.paragraphs[0].paragraph_format.keep_with_next = leads or None  # no row stands alone on a page
         self._file.add_paragraph().paragraph_format.space_after = _points(2)
 
-    def _cell(self, paragraph: Any, content: Content, *, bold: bool, right: bool) -> None:
+    def _cell(self, paragraph: Any, content: Content, size: float, *, bold: bool, right: bool) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH
 
         paragraph.paragraph_format.space_after = _points(0)
@@ -185,7 +188,7 @@ class _Writer:
             self._picture(paragraph, content)
         else:
             run = paragraph.add_run(printable(cell_text(content)))
-            run.font.size, run.bold = _points(_CELL), bold or None
+            run.font.size, run.bold = _points(size), bold or None
 
 
 def _points(size: float) -> Any:
@@ -214,6 +217,22 @@ def _keep_whole(row: Any, *, repeated: bool) -> None:
     properties = row._tr.get_or_add_trPr()
     for tag in ("w:cantSplit", *(["w:tblHeader"] if repeated else [])):
         properties.append(OxmlElement(tag))
+
+
+def _narrow_cells(table: Any) -> None:
+    """Leave as little room beside the texts of a table as in a PDF, so that its words stay whole."""
+    from docx.oxml import OxmlElement
+    from docx.oxml.ns import qn
+
+    margins = OxmlElement("w:tblCellMar")
+    for side in ("left", "right"):
+        margin = OxmlElement(f"w:{side}")
+        margin.set(qn("w:w"), str(_BESIDE))
+        margin.set(qn("w:type"), "dxa")
+        margins.append(margin)
+    properties = table._tbl.tblPr
+    look = properties.find(qn("w:tblLook"))
+    properties.append(margins) if look is None else look.addprevious(margins)
 
 
 class _Collected:

@@ -283,6 +283,11 @@ class Table:
         return max(sum(self._longest_words) / _LINE, 1.0)
 
     @property
+    def letters(self) -> float:
+        """Points of its letters: fewer where words would not stay whole else."""
+        return max(_LETTERS / self.crowded, _SMALLEST)
+
+    @property
     def _longest_words(self) -> list[int]:
         """`(c,)` characters of the longest word in each column, with the space beside it; a number with its error is
         one word where the letters of the table need not be too small for that.
@@ -315,6 +320,9 @@ def _enough(widths: Sequence[float], least: Sequence[float]) -> tuple[float, ...
         found = [least[i] if i in raised else widths[i] / free * left for i in range(len(found))]
     return tuple(found)
 
+
+_LETTERS, _SMALLEST = 8.5, 6.0
+"""Points of the letters of a table, and of one whose words would not stay whole else."""
 
 _LINE, _BESIDE = 105.0, 2
 """Characters in a line of a table as wide as the page, and those that the space between two columns takes."""

@@ -65,10 +65,6 @@ _STYLE: Final = """
 """
 
 
-_TABLE, _SMALLEST = 8.5, 6.0
-"""Points of the letters of a table, and of one whose words would not stay whole else."""
-
-
 _WHOLE: Final = 12
 """Rows of a table up to which it stays on one page."""
 
@@ -179,7 +175,7 @@ def _table(table: Table) -> str:
     figure = f"#figure(kind: table, caption: [#{_text(table.caption)}], {inner})"
     looks = []
     if table.crowded > 1.0:
-        looks.append(f"#show table: set text(size: {max(_TABLE / table.crowded, _SMALLEST):.3g}pt)")
+        looks.append(f"#show table: set text(size: {table.letters:.3g}pt)")
     if len(table.rows) <= _WHOLE and not any(isinstance(cell, Drawing | Chart) for row in table.rows for cell in row):
         looks.append("#show figure: set block(breakable: false)")
     return "\n".join(["#[", *looks, f"{figure}]"]) if looks else figure

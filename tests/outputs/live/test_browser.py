@@ -842,6 +842,23 @@ def test_a_correlation_is_typed(chromium, running, tmp_path):
     assert box.get_attribute("value") == "0.50"
 
 
+def test_ranges_of_one_unit_stand_side_by_side(chromium, running, tmp_path):
+    page = Page(chromium, running(book=book_of_decisions(tmp_path / "case.xlsx")))
+    rows = "return [...document.querySelectorAll('.trend tbody tr')].map((each) => each.querySelector('th bdi').innerText)"
+    assert page.run(rows) == ["margin", "way"]  # metres; the speed has another unit
+    text = "return document.querySelectorAll('.trend small')[1].innerText"
+    low, high = map(float, page.run(text).removesuffix(" m").split(" to "))
+    assert 12.0 < low < high < 26.0
+    before = page.run(text)
+    page.at_rest(lambda: page.slider("Value of limit").send_keys("\ue014"))
+    page.run("document.querySelector('.trend').scrollIntoView({ block: 'end' })")
+    page.until(f"document.querySelectorAll('.trend small')[1].innerText !== {before!r}")
+    page.click(
+        page.of("fieldset.which input", "each.checkVisibility() && each.closest('label').innerText === 'margin'")
+    )
+    page.until("document.querySelector('.trend').hidden")
+
+
 def test_a_scatter_of_the_matrix_is_shown_large(chromium, running, tmp_path):
     page = Page(chromium, running(book=book_of_decisions(tmp_path / "case.xlsx")))
     page.tab("pairs")

@@ -79,6 +79,7 @@ SCRIPTS: Final = {
     "handles.js": (_LIVE, "handles.js"),
     "vectors.js": (_LIVE, "vectors.js"),
     "live_chart.js": (_LIVE, "live_chart.js"),
+    "trend.js": (_LIVE, "trend.js"),
     "left_side.js": (_LIVE, "left_side.js"),
     "right_side.js": (_LIVE, "right_side.js"),
     "further_tabs.js": (_LIVE, "further_tabs.js"),

@@ -6,6 +6,8 @@ const TABS = { charts: "Answers", matters: "What matters", pairs: "Pairs", table
 
 const MANY = 6; // answers and sentences; more of them would leave no room for the charts
 
+const ALL = ""; // is seen where the ranges of all charts are
+
 class RightSide {
   constructor(wire) {
     this.wire = wire;
@@ -31,11 +33,12 @@ class RightSide {
     this.choosing = make("summary");
     this.choices = make("details", { class: "choosing", open: true }, this.choosing, this.choice);
     this.charts = make("div", { class: "live-charts" });
+    this.trend = new TrendView(ALL);
     const split = make("input", { type: "checkbox", checked: true, on: { change: ({ target }) => {
       this.charts.classList.toggle("alone", !target.checked);
     } } });
     this.places.charts.append(this.sentences, this.choices,
-      make("p", { class: "choices" }, make("label", {}, split, "Numbers beside the charts")), this.charts, this.meaning);
+      make("p", { class: "choices" }, make("label", {}, split, "Numbers beside the charts")), this.charts, this.trend.root, this.meaning);
     this.tables = Object.fromEntries(["matters", "tables"].map((key) => [key, make("div", { class: "made" })]));
     for (const [key, place] of Object.entries(this.tables)) this.places[key].append(place);
     this.pairs = new PairView(this.places.pairs, (pair) => {
@@ -84,7 +87,8 @@ class RightSide {
   look() {
     clearTimeout(this.looking);
     this.looking = setTimeout(() => {
-      const names = this.forecasts.map((each) => each.name).filter((name) => this.open.has(name) && this.seen.has(name));
+      const isSeen = (name) => this.seen.has(name) || this.seen.has(ALL);
+      const names = this.forecasts.map((each) => each.name).filter((name) => this.open.has(name) && isSeen(name));
       const { first = "", second = "" } = this.pair ?? {};
       this.wire.say({ kind: "view", forecasts: names, chosen: [...this.open], tab: this.tab, first, second, fits: Boolean(this.fits) });
     }, 60);
@@ -101,6 +105,7 @@ class RightSide {
         else this.open.delete(name);
         this.arrange();
       } } }), named(name))));
+    this.watch.observe(this.trend.root);
     this.choices.hidden = forecasts.length < 2;
     this.choices.open = forecasts.length <= MANY;
     this.choosing.hidden = forecasts.length <= MANY;
@@ -125,6 +130,7 @@ class RightSide {
       }
       this.charts.append(this.panels.get(forecast.name).place);
     }
+    this.compareRanges();
     this.choosing.textContent = `Shown: ${wanted.length} of ${this.forecasts.length} answers`;
     this.tell();
     this.look();
@@ -154,6 +160,13 @@ class RightSide {
         });
       }
     }
+    this.compareRanges();
+  }
+
+  /** The ranges of the charts that are open, in their order. */
+  compareRanges() {
+    const open = this.forecasts.map(({ name }) => this.panels.get(name)?.panel);
+    this.trend.show(open.filter(Boolean));
   }
 
   rest({ sentences, meaning, sampling, warnings, notices }) {

@@ -844,7 +844,9 @@ def test_a_correlation_is_typed(chromium, running, tmp_path):
 
 def test_ranges_of_one_unit_stand_side_by_side(chromium, running, tmp_path):
     page = Page(chromium, running(book=book_of_decisions(tmp_path / "case.xlsx")))
-    rows = "return [...document.querySelectorAll('.trend tbody tr')].map((each) => each.querySelector('th bdi').innerText)"
+    rows = (
+        "return [...document.querySelectorAll('.trend tbody tr')].map((each) => each.querySelector('th bdi').innerText)"
+    )
     assert page.run(rows) == ["margin", "way"]  # metres; the speed has another unit
     text = "return document.querySelectorAll('.trend small')[1].innerText"
     low, high = map(float, page.run(text).removesuffix(" m").split(" to "))

@@ -31,7 +31,8 @@ def written(simulation, folder, **options):
 def test_warnings_and_answers_stand_in_the_report_of_any_run(request, tmp_path, name):
     simulation = request.getfixturevalue(name)
     for text in written(simulation, tmp_path):
-        assert squeezed(f"{simulation.accepted:,} were accepted") in text
+        were = "was" if simulation.accepted == 1 else "were"
+        assert squeezed(f"{simulation.accepted:,} {were} accepted") in text
         for warning in simulation.warnings:
             assert squeezed(warning) in text
         for forecast in simulation.model.forecasts:

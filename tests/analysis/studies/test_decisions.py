@@ -186,3 +186,21 @@ def test_a_table_that_is_interrupted_tells_what_was_run(book):
     assert [each.values for each in found.combinations] == [(20,), (30,), (40,)]
     assert found.ended == "it was interrupted after 4 of about 6 steps"
     assert "Combinations that are not in it were not run." in str(found)
+
+
+@pytest.mark.parametrize("study", [xlmc.decide, xlmc.stress])
+def test_a_share_is_not_in_the_units_of_its_forecast(tmp_path, study):
+    sheets = {
+        "Inputs": [["Name", "Value", "Low", "High"], ["Demand", 50, 0, 100], ["Stock", 40]],
+        "Model": [["Name", "Value", "Units"], ["Short", "=Inputs!B2>Inputs!B3", "pieces"]],
+        "Decisions": [HEADS, ["Stock", "=Inputs!B3", 20, 60, 20, None, "pieces"]],
+    }
+    tables = {
+        "xlmc_assumptions": "Inputs!A1:D2",
+        "xlmc_forecasts": "Model!A1:C2",
+        "xlmc_decisions": "Decisions!A1:G2",
+    }
+    workbook_of(sheets, tables).save(tmp_path / "short.xlsx")
+    said = repr(study(xlmc.load(tmp_path / "short.xlsx"), trials=2_000))
+    assert "probability" in said
+    assert "% pieces" not in said

@@ -62,7 +62,7 @@ def _sentences(found: Decided) -> Iterator[str]:
             answer = of_forecast(found.base, forecast.name)
             share = "probability" if answer.text is None else f"share of “{answer.text}”"
             form, what = answer.form, "mean" if answer.has_range else share
-            units = f" {forecast.units}" if forecast.units else ""
+            units = f" {forecast.units}" if forecast.units and answer.has_range else ""
             mean = f"{form.estimate(best.mean)}{units}"
             text = f"The {what} of {forecast.name} is {word}, {mean}, with {best.combination.answers.name}"
             if best.next is None or best.ahead is None:

@@ -63,11 +63,12 @@ def _sentences(found: Stressed) -> Iterator[str]:
 def _strongest(found: Stressed, forecast: Forecast, tail: Tail) -> str:
     """Say which tail moves the mean of a forecast most."""
     part, form = tail.parts[forecast.name], found.forms[forecast.name]
-    change, units = part.changes["mean"], f" {forecast.units}" if forecast.units else ""
+    change, is_share = part.changes["mean"], "low" not in part.numbers
     if change.error is not None and abs(change.value) < 3.0 * change.error:
         return f"{forecast.name}: these trials show no assumption whose tails move the mean."
     share = f"share of “{found.texts[forecast.name]}”" if forecast.name in found.texts else "probability"
-    what = share if form.factor != 1.0 and "low" not in part.numbers else "mean"
+    what = share if form.factor != 1.0 and is_share else "mean"
+    units = f" {forecast.units}" if forecast.units and not is_share else ""
     side = "highest" if tail.is_high else "lowest"
     return (
         f"{forecast.name} moves most with {tail.assumption}: with its {side} {_percent(found.share)} the {what} is "

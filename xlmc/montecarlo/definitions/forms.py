@@ -201,11 +201,15 @@ class Form:
             return self.estimate(found)
         if not found.value and not found.error:
             return f"0 {'s' if self.shows == 'span' else 'days'}"
-        return "" if math.isnan(found.value) else span_text(found.value, found.error)
+        return "" if math.isnan(found.value) else span_text(found.value, found.error, days=self.shows != "span")
 
     def width(self, value: float) -> str:
         """Return the width of a bar: of dates a span of time."""
-        return self.number(value) if self.kind is not Kind.DATE else span_text(value, exact=True)
+        return (
+            self.number(value)
+            if self.kind is not Kind.DATE
+            else span_text(value, exact=True, days=self.shows != "span")
+        )
 
     def tick(self, value: float, decimals: int) -> str:
         """Write a number beside an axis, to so many decimals of the number itself."""
@@ -282,19 +286,19 @@ class Form:
         return number_text(value)
 
 
-def span_text(days: float, error: float | None = None, *, exact: bool = False) -> str:
-    """Write a span of time in the units that suit it.
+def span_text(span: float, error: float | None = None, *, exact: bool = False, days: bool = True) -> str:
+    """Write a span of time, given in days, in the units that suit it; in hours at most without `days`, as `[h]:mm` has.
 
-    >>> span_text(0.084), span_text(12.31, 0.042), span_text(250.0, exact=True)
-    ('2.0 h', '12.310 ± 0.042 days', '250 days')
+    >>> span_text(0.084), span_text(12.31, 0.042), span_text(250.0, exact=True), span_text(2.5, exact=True, days=False)
+    ('2.0 h', '12.310 ± 0.042 days', '250 days', '60 h')
     """
-    _, factor, unit = next(each for each in _UNITS if abs(days) >= each[0])
+    _, factor, unit = next(each for each in _UNITS[not days :] if abs(span) >= each[0])
     if error:
-        return f"{format_estimate(days * factor, error * factor)} {unit}"
+        return f"{format_estimate(span * factor, error * factor)} {unit}"
     if exact:
-        text = exact_text(days * factor)
+        text = exact_text(span * factor)
         return "1 day" if (text, unit) == ("1", "days") else f"{text} {unit}"
-    return f"{fixed_text(days * factor, max(decimals_of(days * factor) or 0, 0))} {unit}"
+    return f"{fixed_text(span * factor, max(decimals_of(span * factor) or 0, 0))} {unit}"
 
 
 PLAIN: Final = Form()

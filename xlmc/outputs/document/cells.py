@@ -287,7 +287,7 @@ def _format_number(value: float, number_format: str, date1904: bool = False) -> 
         return _text_in_form(value, number_format, date1904)
     decimals, ending = len(found["decimals"] or ""), found["ending"]
     if ending == "E+00":
-        return styled_text(value, f".{decimals}e")
+        return styled_text(value, f".{decimals}e") if value else "0"
     if ending == "%":
         return f"{fixed_text(100.0 * value, decimals)} %"
     return (

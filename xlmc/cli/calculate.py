@@ -207,7 +207,7 @@ def _check(
     """Refuse, before anything is computed, what could not be written; `read` are the files read, BOOK first."""
     from xlmc.errors import WorkbookError
     from xlmc.excel.workbook.target import Target, copy_ending, refuse_folder, refuse_same_file
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     refuse_same_file(outputs)
     book = read[0]
@@ -263,7 +263,7 @@ def _shown(value: CellValue, form: Form) -> str:
     """Write a value as its cell shows it; a number of which the cell does not say what it is with twelve digits."""
     from xlmc.montecarlo.definitions.stating import Kind
     from xlmc.montecarlo.definitions.tables.table_rows import as_text
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     if isinstance(value, bool | ErrorCode) or not isinstance(value, int | float):
         return as_text(value)
@@ -272,7 +272,7 @@ def _shown(value: CellValue, form: Form) -> str:
 
 def _tell(answers: _Answers, book: Path, outputs: Sequence[Path]) -> None:
     """Say what was computed, to stderr where the values were printed for a program."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     first, only = answers.found[0], len(answers.found) == 1
     if only and not answers.wanted:

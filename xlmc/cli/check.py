@@ -113,7 +113,7 @@ def _show_base_case(model: CompiledModel) -> list[str]:
 
 def _error_lines(model: CompiledModel, errors: BaseErrors) -> Iterator[str]:
     """Return the cells that errors come from with their formulas, then the cells that have theirs from these."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     handled = "" if errors.answers else " (handled: no forecast, filter or check is an error)"
     for cell, code in list(errors.roots.items())[:_MOST_CELLS]:
@@ -136,7 +136,7 @@ def _standing(assumption: Assumption) -> str:
 def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> None:
     from xlmc.analysis.results.statements.in_words import distribution_text, evidence_text, given_text, limits_text
     from xlmc.cli.printing import table
-    from xlmc.montecarlo.statistics.number_text import exact_text
+    from xlmc.montecarlo.number_text import exact_text
     from xlmc.outputs.summary import percent
 
     table(
@@ -199,7 +199,7 @@ def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> 
 
 def _stated(forecast: Forecast) -> tuple[str, str, str]:
     """How a forecast is to be stated: its resolution, its kind and its role."""
-    from xlmc.montecarlo.statistics.number_text import exact_text
+    from xlmc.montecarlo.number_text import exact_text
 
     resolution = "" if forecast.report_to is None else exact_text(forecast.report_to)
     return resolution, "" if forecast.kind is None else forecast.kind.value, forecast.role.value
@@ -217,14 +217,14 @@ def scenario_table(definitions: Definitions) -> None:
 
 def _drawn_with(model: CompiledModel | None, correlation: Correlation) -> str:
     from xlmc.montecarlo.model.correlating import drawn_correlation
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     found = None if model is None else drawn_correlation(model.groups, correlation.first, correlation.second)
     return "-" if found is None else number_text(found, 3)
 
 
 def _show_need(model: CompiledModel, workbook: Workbook) -> None:
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     formulas = sum(1 for _ in workbook.formula_cells())
     needed, varying = model.needed.graph.formulas, model.needed.graph.varying
@@ -267,7 +267,7 @@ def check_table(run: RunResult) -> None:
     """Print how many accepted trials fail each check; only how many checks there are where no trial fails one."""
     from xlmc.cli.printing import table
     from xlmc.montecarlo.diagnostics.checking import checks_sentence
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     if not run.checks:
         return

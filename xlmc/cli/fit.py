@@ -163,7 +163,7 @@ def fit(
 def _copy_tests(source: str, cells: str | None, vehicle: int, into: Path | None, *, as_json: bool) -> None:
     """Copy crash tests, and say what stiffness they give."""
     from xlmc.cli import fit_tests
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     if into is None:
         raise click.UsageError("--tests needs --into, the workbook whose sheet Stiffness takes the tests.")
@@ -300,7 +300,7 @@ def _report(
     as_json: Callable[[], dict[str, object]],
 ) -> StudyReport:
     """Report what was found; the row to paste comes last."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import Table, blocks_of
     from xlmc.outputs.study_report import StudyReport
 
@@ -319,7 +319,7 @@ def _cautions(found: Fitting) -> list[str]:
 
 
 def _ranking(found: Fitting, source: str, blank: int) -> Table:
-    from xlmc.montecarlo.statistics.number_text import count_text, fixed_text
+    from xlmc.montecarlo.number_text import count_text, fixed_text
     from xlmc.outputs.document.parts import Table
 
     left_out = f"; {count_text(blank)} blank cells left out" if blank else ""
@@ -383,8 +383,8 @@ _MEANING = (
 
 def _parameters(fitted: Fitted) -> str:
     from xlmc.analysis.studies.fitting import parameter_texts
+    from xlmc.montecarlo.number_text import number_text
     from xlmc.montecarlo.statistics import format_estimate
-    from xlmc.montecarlo.statistics.number_text import number_text
 
     parts, texts = [], parameter_texts(fitted)
     for heading, value in fitted.parameters.items():
@@ -399,7 +399,7 @@ def _parameters(fitted: Fitted) -> str:
 
 
 def _statistic(value: float | None) -> str:
-    from xlmc.montecarlo.statistics.number_text import styled_text
+    from xlmc.montecarlo.number_text import styled_text
 
     return "–" if value is None else "∞" if math.isinf(value) else styled_text(value, ".3f")
 

@@ -227,7 +227,7 @@ def _report(found: Fits, source: str) -> StudyReport:
 
 
 def _blocks(found: Fits) -> Iterator[str | Block]:
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import Table
     from xlmc.outputs.summary import share_text
 
@@ -270,7 +270,7 @@ def _parameters(each: ColumnFit, best: Fitted) -> str:
 
 
 def _pairs(found: Fits) -> Table:
-    from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text
+    from xlmc.montecarlo.number_text import count_text, fixed_text, number_text
     from xlmc.outputs.document.parts import Table
 
     rows = []

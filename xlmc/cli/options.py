@@ -50,7 +50,7 @@ class WholeNumber(click.ParamType):  # type: ignore[type-arg]  # no generic befo
             BadParameter: it is none, or lies outside.
         """
         from xlmc.montecarlo.definitions.amounts import typed_whole_number
-        from xlmc.montecarlo.statistics.number_text import count_text
+        from xlmc.montecarlo.number_text import count_text
 
         found = value if isinstance(value, int) else typed_whole_number(value)
         if found is None:

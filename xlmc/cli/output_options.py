@@ -389,7 +389,7 @@ class Outputs(NamedTuple):
         Where a name was taken since the run began, or a program holds the file, a free name beside it is used.
         """
         from xlmc.api import Simulation
-        from xlmc.montecarlo.statistics.number_text import count_text
+        from xlmc.montecarlo.number_text import count_text
 
         written, lines = True, []
         for path, label, write in self._files(Simulation(run)):

@@ -107,7 +107,7 @@ def _areas(book: Workbook, places: Sequence[str]) -> list[Area] | None:
 def _show(found: Prepared) -> None:
     from xlmc.cli.printing import table
     from xlmc.montecarlo.definitions.tables.table_rows import as_text
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     for title, rows in (("Assumptions, frozen", found.found.assumptions), ("Forecasts", found.found.forecasts)):
         if not rows:

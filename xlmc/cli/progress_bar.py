@@ -18,7 +18,7 @@ __all__ = ["errors_line", "progress_bar", "step_line", "trials_line"]
 
 def trials_line(standing: Progress) -> str:
     """`65,536 trials, 1,150 accepted (1.75 %)`."""
-    from xlmc.montecarlo.statistics.number_text import count_text, number_text
+    from xlmc.montecarlo.number_text import count_text, number_text
 
     if standing.searching:
         return f"{count_text(standing.trials)} trials, looking for accepted ones"
@@ -28,7 +28,7 @@ def trials_line(standing: Progress) -> str:
 
 def errors_line(standing: Progress) -> str:
     """Return the standard error of every forecast's mean so far: `± Chevrolet delta-V 0.013, Nissan delta-V 0.02`."""
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     known = [(name, mean.error) for name, mean in standing.means.items() if mean.error is not None]
     return f"± {', '.join(f'{name} {number_text(error, 2)}' for name, error in known)}" if known else ""

@@ -141,7 +141,7 @@ def _numbers(numbers: Sequence[NumberChange]) -> Iterator[str]:
 
 def _sheet_lines(found: Replayed) -> Iterator[str]:
     """Yield what the result sheets show that the repeated run does not give."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     differences = found.shown.differences
     if differences:
@@ -179,7 +179,7 @@ def _difference_json(difference: CellDifference) -> dict[str, object]:
 
 
 def _figure(number: object) -> str:
-    from xlmc.montecarlo.statistics.number_text import fixed_text, styled_text
+    from xlmc.montecarlo.number_text import fixed_text, styled_text
 
     if not isinstance(number, int | float):
         return "none"
@@ -187,7 +187,7 @@ def _figure(number: object) -> str:
 
 
 def _rest(listed: Sequence[object]) -> Iterator[str]:
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     if len(listed) > _MOST:
         yield f"  … and {count_text(len(listed) - _MOST)} more"

@@ -77,7 +77,7 @@ def _show(edited: EditedWorkbook, model: CompiledModel) -> None:
     """Print the cells with what they held and hold, and what could not be computed."""
     from xlmc.cli.printing import table
     from xlmc.montecarlo.definitions.tables.table_rows import as_text
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     rows = [
         (str(cell), as_text(old) or "nothing", as_text(new) or "nothing") for cell, (old, new) in edited.cells.items()

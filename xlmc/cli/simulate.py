@@ -71,8 +71,8 @@ def simulate(
     from xlmc.montecarlo.definitions.feeds import read_feeds
     from xlmc.montecarlo.definitions.run_options import KEPT_INPUTS, RunOptions
     from xlmc.montecarlo.model.loading import load
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.montecarlo.simulation.simulate import run_model
-    from xlmc.montecarlo.statistics.number_text import count_text
 
     if os.path.isdir(book):
         load(book, functions=functions)  # says so
@@ -163,7 +163,7 @@ def show_run(run: RunResult) -> None:
     from xlmc.cli.check import check_table, show_first
     from xlmc.cli.printing import table
     from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document import further_sections
     from xlmc.outputs.document.parts import Heading
     from xlmc.outputs.summary import error_sentence, rejection_rows, summarise, summary_text
@@ -228,7 +228,7 @@ def _show_scenarios(run: RunResult) -> None:
 
 def _acceptance_sentence(run: RunResult) -> str:
     from xlmc.analysis.results.record.errors_met import rest_sentences
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.summary import share_text
 
     if run.rare is not None:
@@ -254,7 +254,7 @@ def _acceptance_sentence(run: RunResult) -> str:
 
 def _discards(run: RunResult) -> list[tuple[str, ...]]:
     from xlmc.analysis.results.statements.in_words import discards_of, limits_text
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.summary import share_text
 
     return [

@@ -95,7 +95,7 @@ def _entry(cell: CellCheck) -> dict[str, object]:
 def _blocks(found: Verification, saved_by: str, most: int) -> list[str | Block]:
     """Return what was found, with `most` differing cells; `saved_by` is the program that saved their values."""
     from xlmc.analysis.studies.verify import Status, groups
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import Table
 
     counts = [f"{count_text(found.count(status))} {status.value}" for status in Status if found.count(status)]
@@ -129,13 +129,13 @@ def _blocks(found: Verification, saved_by: str, most: int) -> list[str | Block]:
 
 def _written(value: object) -> str:
     """Write a value with all digits that it has, which may differ in the last ones."""
-    from xlmc.montecarlo.statistics.number_text import whole_text
+    from xlmc.montecarlo.number_text import whole_text
 
     found = plain(value)
     return whole_text(found) if isinstance(found, float) else str(found)
 
 
 def _percent(difference: float | None) -> str:
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     return "" if difference is None else number_text(difference, 2)

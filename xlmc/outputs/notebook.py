@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.analysis.results.statements.in_words import distribution_text, limits_text
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.number_styles import in_style_of
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document import further_sections
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import figures_of

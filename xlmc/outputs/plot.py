@@ -24,8 +24,8 @@ from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.keywords import forecast_named
+from xlmc.montecarlo.number_text import count_text, in_signs, signs, styled_text
 from xlmc.montecarlo.statistics import rank_correlation
-from xlmc.montecarlo.statistics.number_text import count_text, in_signs, signs, styled_text
 from xlmc.outputs.document.colours import DARK, GRID, INK, LIGHT
 from xlmc.outputs.document.drawn_trials import drawn_trials
 from xlmc.outputs.document.parts import Lines

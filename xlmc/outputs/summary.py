@@ -19,10 +19,10 @@ from xlmc.montecarlo.distributions.parameters import range_text
 from xlmc.montecarlo.loop.categories import labelled
 from xlmc.montecarlo.model.certain_filters import breakable
 from xlmc.montecarlo.model.draw_binding import base_point
+from xlmc.montecarlo.number_text import count_text, decimals_of, exact_digits, number_text
 from xlmc.montecarlo.rare.account import probability_text
 from xlmc.montecarlo.statistics import Estimate, complement, format_estimate
 from xlmc.montecarlo.statistics.estimate import finite
-from xlmc.montecarlo.statistics.number_text import count_text, decimals_of, exact_digits, number_text
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column

@@ -45,10 +45,10 @@ from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = [
     "ACCEPTANCE_TOLERANCE",

@@ -31,7 +31,7 @@ from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.cell_forms import forms_of
 from xlmc.montecarlo.model.labels import calculate_labels
 from xlmc.montecarlo.model.solving import unknown_of, with_solved_cells
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.number_text import number_text
 
 __all__ = ["Found", "seek"]
 

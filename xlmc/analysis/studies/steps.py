@@ -15,7 +15,7 @@ from types import TracebackType
 from typing import Final, TypeVar
 
 from xlmc.montecarlo.loop.stopping.watch import Interruption
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = ["Steps", "Tell", "ended_early"]
 

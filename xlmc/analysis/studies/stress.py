@@ -41,11 +41,11 @@ from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
 from xlmc.montecarlo.statistics.proportions import least_error
 
 __all__ = [

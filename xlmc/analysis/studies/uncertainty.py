@@ -36,11 +36,11 @@ from xlmc.montecarlo.definitions.tables.assumptions import UNCERTAINTY
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import upstream
+from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.montecarlo.sampling.sampling_plan import MOST_OUTER, SamplingPlan
 from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate, Sample, percentiles, rank_correlation
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = [
     "CONFIDENCE",

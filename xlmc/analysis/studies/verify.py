@@ -22,7 +22,7 @@ from xlmc.excel.workbook.workbook import CellValue, Workbook
 from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.in_cells.calls import holds_call
 from xlmc.montecarlo.model.needed import targets_of
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = ["TOLERANCE", "CellCheck", "Status", "Verification", "verify"]
 

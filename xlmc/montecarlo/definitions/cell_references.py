@@ -13,7 +13,7 @@ from xlmc.errors import DefinitionError
 from xlmc.excel.address import Area, Cell, column_letters, column_number, parse_address, quote_sheet
 from xlmc.excel.workbook.workbook import DefinedName, Formula, Table, Workbook
 from xlmc.montecarlo.distributions.spelling import did_you_mean, nearest
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = [
     "area_of_reference",

@@ -20,8 +20,8 @@ from xlmc.montecarlo.definitions.run_settings import USUAL, Settings
 from xlmc.montecarlo.definitions.scenarios import Scenario
 from xlmc.montecarlo.definitions.stating import Kind, Role, Which
 from xlmc.montecarlo.distributions import FAMILIES, Family
+from xlmc.montecarlo.number_text import exact_text
 from xlmc.montecarlo.sampling.draws import Draw
-from xlmc.montecarlo.statistics.number_text import exact_text
 
 __all__ = [
     "CUTOFFS",

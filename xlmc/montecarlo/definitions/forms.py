@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.errors import FormulaError
 from xlmc.excel.functions.number_format import FormatError, UnknownFormat, parse_format
 from xlmc.montecarlo.definitions.stating import Kind
-from xlmc.montecarlo.statistics.number_text import (
+from xlmc.montecarlo.number_text import (
     decimals_of,
     exact_text,
     fixed_text,

@@ -56,7 +56,7 @@ def in_style(style: str) -> Iterator[None]:
     """Write all numbers in a style, one of `STYLES`, until the end of the block; empty is the usual one. A style that
     the command was asked for goes before it.
     """
-    from xlmc.montecarlo.statistics.number_text import in_signs  # not for those who only ask what styles there are
+    from xlmc.montecarlo.number_text import in_signs  # not for those who only ask what styles there are
 
     with in_signs(*STYLES[_ASKED.get() or style or USUAL_STYLE]):
         yield
@@ -65,7 +65,7 @@ def in_style(style: str) -> Iterator[None]:
 @contextmanager
 def as_programs_read() -> Iterator[None]:
     """Write all numbers in the usual style until the end of the block, whatever was asked for."""
-    from xlmc.montecarlo.statistics.number_text import in_signs
+    from xlmc.montecarlo.number_text import in_signs
 
     with in_signs(*STYLES[USUAL_STYLE]):
         yield

@@ -18,7 +18,7 @@ from xlmc.excel.formula import Graph, Resolver, build_graph, ir
 from xlmc.excel.formula.graph import reached
 from xlmc.excel.workbook.workbook import DataTable, Workbook
 from xlmc.montecarlo.definitions.problems import Findings
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = [
     "TABLE_REASON",

@@ -24,7 +24,7 @@ from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.identity import Claims
 from xlmc.montecarlo.definitions.tables.table_rows import as_text, number_in
 from xlmc.montecarlo.distributions.spelling import name_key, plain
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 
 __all__ = ["XLRiskSheet", "read_xlrisk"]
 

@@ -23,8 +23,8 @@ from xlmc.montecarlo.definitions.evidence import Bell
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.diagnostics.evidence_trials import EvidenceTrials, evidence_trials
 from xlmc.montecarlo.model.plain_words import list_of
+from xlmc.montecarlo.number_text import count_text, fixed_text, number_text, styled_text
 from xlmc.montecarlo.statistics import Estimate, Sample
-from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text, styled_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.evidence import Evidence, Law

@@ -13,8 +13,8 @@ from xlmc.engine.engine import BLANK_RESULT, TEXT_RESULT
 from xlmc.errors import ErrorCode
 from xlmc.montecarlo.loop.blocks import portions
 from xlmc.montecarlo.model.draw_binding import base_point
+from xlmc.montecarlo.number_text import count_text, exact_text, styled_text
 from xlmc.montecarlo.statistics import Estimate, proportion
-from xlmc.montecarlo.statistics.number_text import count_text, exact_text, styled_text
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from xlmc.engine.graph.nodes import Input
 from xlmc.engine.passes.random_rounding import RandomRounding, closure, evaluate, formula_of, numbers_of, term_sizes
 from xlmc.excel.functions.budget import TooLargeError
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel

@@ -17,8 +17,8 @@ import numpy as np
 
 from xlmc.errors import Notice
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
+from xlmc.montecarlo.number_text import number_text, styled_text
 from xlmc.montecarlo.statistics import Sample
-from xlmc.montecarlo.statistics.number_text import number_text, styled_text
 
 __all__ = ["TornDirection", "direction_notices", "torn_direction"]
 

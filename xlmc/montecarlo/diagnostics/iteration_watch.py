@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from xlmc.engine.tracking import TrackingEvaluator
 from xlmc.errors import Notice
 from xlmc.montecarlo.loop.blocks import portions
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel

@@ -14,9 +14,9 @@ from xlmc.montecarlo.definitions.definitions import Assumption
 from xlmc.montecarlo.definitions.in_cells.result_functions import CRYSTAL_BALL_STATISTICS, Limits, ResultCall
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
+from xlmc.montecarlo.number_text import number_text
 from xlmc.montecarlo.sampling.draws import Draw
 from xlmc.montecarlo.statistics import rank_correlation
-from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["Answers", "RunFacts", "Simulations"]
 

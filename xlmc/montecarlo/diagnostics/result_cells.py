@@ -25,7 +25,7 @@ from xlmc.montecarlo.definitions.in_cells.call_arguments import number_of
 from xlmc.montecarlo.definitions.in_cells.result_functions import is_result, result_call
 from xlmc.montecarlo.definitions.unavailable import areas_text
 from xlmc.montecarlo.diagnostics.result_answers import Answers
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = ["ShownResults", "filled_sheets", "recalculated", "shown_results"]
 

@@ -20,7 +20,7 @@ from xlmc.montecarlo.definitions.evidence_methods import EVIDENCE_METHODS
 from xlmc.montecarlo.diagnostics.evidence_trials import evidence_trials
 from xlmc.montecarlo.loop.blocks import portions
 from xlmc.montecarlo.model.draw_binding import parameter_target
-from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text
+from xlmc.montecarlo.number_text import count_text, fixed_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings

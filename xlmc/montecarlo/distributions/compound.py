@@ -24,7 +24,7 @@ from xlmc.montecarlo.distributions.quadrature import gauss_legendre
 from xlmc.montecarlo.distributions.split_mix import GOLDEN, mixed
 from xlmc.montecarlo.distributions.truncated import Slice, Truncated
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 
 __all__ = ["Compound", "Part"]
 

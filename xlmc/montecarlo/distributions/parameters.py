@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.number_text import number_text
 
 __all__ = [
     "HIGH",

@@ -33,7 +33,7 @@ def labelled(column: Column) -> tuple[Column, tuple[str, ...]]:
 
 def _number_text(number: float) -> str:
     from xlmc.montecarlo.definitions.number_styles import as_programs_read
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     with as_programs_read():  # results are named by it
         return number_text(float(number), 12)

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.columns import column_store, free_disk
 from xlmc.montecarlo.loop.blocks import Task
-from xlmc.montecarlo.statistics.number_text import fixed_text, number_text
+from xlmc.montecarlo.number_text import fixed_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.stopping import Stopping

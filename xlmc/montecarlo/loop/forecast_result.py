@@ -21,8 +21,8 @@ from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.forms import Form, kind_of_format
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.plain_words import list_of
+from xlmc.montecarlo.number_text import count_text, number_text, styled_text
 from xlmc.montecarlo.statistics import Description, Estimate, Sample, errors_from_trials, too_short
-from xlmc.montecarlo.statistics.number_text import count_text, number_text, styled_text
 
 __all__ = ["FARTHEST_PART", "TELLING", "ForecastResult", "Replicates", "interval_notices", "tail_notices"]
 

@@ -59,8 +59,8 @@ from xlmc.montecarlo.distributions.spelling import by_names, did_you_mean, name_
 from xlmc.montecarlo.model.draw_binding import draw_of
 from xlmc.montecarlo.model.loading import filter_faults, model_with_values
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.number_text import number_text
 from xlmc.montecarlo.sampling.draws import Draw
-from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = ["applied", "changed_cells", "edits", "reads_again"]
 

@@ -11,10 +11,10 @@ from xlmc.errors import Notice
 from xlmc.montecarlo.definitions.definitions import Copula, Correlation
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
+from xlmc.montecarlo.number_text import number_text, styled_text
 from xlmc.montecarlo.sampling.copula import GaussianCopula
 from xlmc.montecarlo.sampling.copulas import Clayton, Frank, Gumbel, Joining, Reflected, SameTrials, StudentTCopula
 from xlmc.montecarlo.sampling.draws import CorrelatedGroup, Draw
-from xlmc.montecarlo.statistics.number_text import number_text, styled_text
 
 __all__ = [
     "CHANGED",

@@ -20,8 +20,8 @@ from xlmc.excel.functions.fifteen_digits import COMPARISONS
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
 from xlmc.montecarlo.model.draw_binding import VaryingError, draw_of, parameter_target
 from xlmc.montecarlo.model.needed import Needed, targets_of
+from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.sampling.draws import Draw
-from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["possible_draws", "with_errors"]
 

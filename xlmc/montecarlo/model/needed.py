@@ -13,7 +13,7 @@ from xlmc.excel.formula.graph import reached
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Check, Definitions, Filter, Forecast
 from xlmc.montecarlo.definitions.evidence import Bell
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = [
     "Needed",

@@ -33,7 +33,7 @@ from xlmc.montecarlo.distributions import FAMILIES, family_named
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.loading import build_model
 from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.number_text import number_text
 
 __all__ = ["FilterColumns", "ForecastColumns", "Vectorised", "function_model"]
 

@@ -28,7 +28,7 @@ from xlmc.excel.functions.values import Codes, Value
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Definitions, Parameter, Solve
 from xlmc.montecarlo.definitions.stating import Which
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.number_text import number_text
 
 __all__ = ["Unknown", "fault_text", "unknown_of", "with_solved_cells"]
 

@@ -6,8 +6,8 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
+from xlmc.montecarlo.number_text import count_text, fixed_text, number_text
 from xlmc.montecarlo.statistics import Estimate, format_estimate
-from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text
 
 __all__ = ["RareAccount", "probability_text"]
 

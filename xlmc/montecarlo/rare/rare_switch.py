@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import SimulationError
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo.loop.blocks import Block, ModelRunner, Task
+from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.montecarlo.rare.account import RareAccount
 from xlmc.montecarlo.rare.layered import Layered, SearchSpace, search_space_of
 from xlmc.montecarlo.rare.learning import Learned, Round, Say, count_on, learn, learn_again, search_on
@@ -22,7 +23,6 @@ from xlmc.montecarlo.rare.splitting import Distance
 from xlmc.montecarlo.rare.unexplained import Evidence, Tempered, plain_assumptions, wide_assumptions
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics.estimate import Estimate, with_relative_error
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings

@@ -34,10 +34,10 @@ from xlmc.montecarlo.loop.forecast_result import ForecastResult, Replicates, tai
 from xlmc.montecarlo.loop.stopping import Stopped
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.model.plain_words import list_of
+from xlmc.montecarlo.number_text import count_text, number_text, styled_text
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import count_text, number_text, styled_text
 from xlmc.montecarlo.statistics.sample import MOST_GROUPS
 
 if TYPE_CHECKING:

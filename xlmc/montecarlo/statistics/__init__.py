@@ -4,12 +4,12 @@ Pure functions of (values, weights=None, replicate=None). Errors come from indep
 independent replicates (Latin hypercube, scrambled Sobol), and are Monte Carlo error only, not reconstruction error.
 """
 
+from xlmc.montecarlo.number_text import format_estimate
 from xlmc.montecarlo.statistics.association import rank_correlation
 from xlmc.montecarlo.statistics.describe import Description, describe, undescribed
 from xlmc.montecarlo.statistics.estimate import Estimate, supported_digits
 from xlmc.montecarlo.statistics.heavy_tails import farthest_part
 from xlmc.montecarlo.statistics.mode import mode
-from xlmc.montecarlo.statistics.number_text import format_estimate
 from xlmc.montecarlo.statistics.proportions import (
     complement,
     inverse_proportion,

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from xlmc.montecarlo.interruption import checkpoint
-from xlmc.montecarlo.statistics.number_text import format_estimate
+from xlmc.montecarlo.number_text import format_estimate
 
 __all__ = ["Estimate", "finite", "finite_json", "supported_digits"]
 

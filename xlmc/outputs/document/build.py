@@ -14,7 +14,7 @@ from xlmc.excel.workbook.printable import label
 from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.spelling import name_key
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.case_fields import case_of
 from xlmc.outputs.document.parts import Block, Document, Figure, Heading, Table
 from xlmc.outputs.document.sections import SECTIONS

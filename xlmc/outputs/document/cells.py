@@ -15,8 +15,7 @@ from xlmc.analysis.results.statements.in_words import plain_text
 from xlmc.excel.functions.number_format import FormatError, parse_format
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
-from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import (
+from xlmc.montecarlo.number_text import (
     decimals_of,
     exact_text,
     fixed_text,
@@ -24,6 +23,7 @@ from xlmc.montecarlo.statistics.number_text import (
     styled_text,
     two_digit_exponent,
 )
+from xlmc.montecarlo.statistics import Estimate
 
 __all__ = [
     "AT_LEAST",

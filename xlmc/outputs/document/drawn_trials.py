@@ -13,7 +13,7 @@ import numpy as np
 from xlmc.errors import DefinitionError, WorkbookError
 from xlmc.excel.address import Area, parse_address
 from xlmc.montecarlo.definitions.cell_references import cell_of_reference, split_sheet
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document.parts import Chart, Line, Lines
 from xlmc.outputs.document.scene_drawing import SceneLine, scenes
 

@@ -14,7 +14,7 @@ from datetime import date
 from typing import Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
-from xlmc.montecarlo.statistics.number_text import signs
+from xlmc.montecarlo.number_text import signs
 from xlmc.outputs.document.cells import Shown, shown_text
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.summary import Phrase

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import check_folder, write_workbook
-from xlmc.montecarlo.statistics.number_text import in_signs
+from xlmc.montecarlo.number_text import in_signs
 from xlmc.outputs.document.build import Wanted, build
 from xlmc.outputs.document.parts import Document
 

@@ -17,7 +17,7 @@ from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.measures import noise
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
-from xlmc.montecarlo.statistics.number_text import count_text, exact_text, fixed_text, number_text
+from xlmc.montecarlo.number_text import count_text, exact_text, fixed_text, number_text
 from xlmc.outputs.document.charts import influence_chart, shape_chart, shares_chart
 from xlmc.outputs.document.content.answers import answer_blocks
 from xlmc.outputs.document.content.checks import check_blocks

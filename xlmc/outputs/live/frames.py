@@ -19,6 +19,7 @@ from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.montecarlo.definitions.forms import PLAIN, Form, span_text
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.interruption import checkpoint
+from xlmc.montecarlo.number_text import count_text, fixed_text, number_text
 from xlmc.montecarlo.statistics import (
     Estimate,
     Sample,
@@ -28,7 +29,6 @@ from xlmc.montecarlo.statistics import (
     rank_correlation,
 )
 from xlmc.montecarlo.statistics.estimate import finite
-from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text
 from xlmc.outputs.document.content.answers import opening_sentences
 from xlmc.outputs.document.content.scenarios import scenario_blocks
 from xlmc.outputs.document.element import EMPTY, Html, element, join

@@ -22,9 +22,9 @@ from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.model.loading import build_model
+from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import ChangedFrom
-from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs import save
 from xlmc.outputs.json_document import save_json
 from xlmc.outputs.live.adjustments import Adjustments, in_words, scenario_of

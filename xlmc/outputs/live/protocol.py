@@ -76,7 +76,7 @@ from dataclasses import dataclass
 from typing import Any, Final
 
 from xlmc.errors import XlmcError
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.live.adjustments import NONE, PARTS
 from xlmc.outputs.live.kinds import KINDS
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 from xlmc.analysis.results.statements.in_words import distribution_text, given_text, limits_text
 from xlmc.montecarlo.definitions.definitions import Filter
-from xlmc.montecarlo.statistics.number_text import count_text, styled_text
+from xlmc.montecarlo.number_text import count_text, styled_text
 from xlmc.outputs.live.adjustments import LIMITS, SOLVED, assumption_numbers
 
 if TYPE_CHECKING:

@@ -24,9 +24,9 @@ from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.tables.evidence_rows import check_sizes
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics.estimate import finite, t_quantile
-from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.live.adjustments import (
     BAND,
     LIMITS,

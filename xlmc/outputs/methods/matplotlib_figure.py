@@ -13,7 +13,7 @@ import numpy as np
 
 from xlmc.analysis.studies.methods import STATISTICS, Curve, Runs, Study
 from xlmc.analysis.studies.methods.curve import Rms
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.outputs.methods.speed_chart import HOW_TO_READ, Line, Picture, Work, column_of, guides_of, picture_of, spread
 
 if TYPE_CHECKING:

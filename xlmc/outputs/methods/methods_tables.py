@@ -12,9 +12,9 @@ from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
 from xlmc.analysis.studies.methods.need import shortfall
 from xlmc.montecarlo.definitions.forms import Form, span_text
 from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.number_text import count_text, fixed_text, number_text, styled_text
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text, styled_text
 from xlmc.outputs.document.parts import Table
 from xlmc.outputs.summary import share_text
 

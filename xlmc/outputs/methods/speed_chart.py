@@ -18,7 +18,7 @@ from xlmc.analysis.studies.methods import Curve, Study
 from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
 from xlmc.analysis.studies.methods.law import law
 from xlmc.analysis.studies.methods.need import Choice, Need, choice, reach_of, seconds_of, shortfall
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.number_text import number_text
 from xlmc.outputs.methods.methods_tables import near_text
 
 __all__ = [

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.outputs.document.charts import shares_chart
 from xlmc.outputs.document.element import EMPTY, Html, element, join, void
 from xlmc.outputs.document.html_writer import estimate_html, picture_html, share_html

@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 from xlmc.analysis.results.statements.in_words import distribution_text, limits_text, status
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.distributions.spelling import name_key
+from xlmc.montecarlo.number_text import count_text, exact_text
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import count_text, exact_text
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import estimate_html, share_html
 from xlmc.outputs.summary import SummaryRow, percent, summarise

@@ -11,8 +11,8 @@ from xlmc.analysis.results.statements.in_words import distribution_text, status
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.number_text import count_text, styled_text, whole_text
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import count_text, styled_text, whole_text
 from xlmc.outputs.document.cells import NONE
 from xlmc.outputs.document.charts import shape_chart
 from xlmc.outputs.document.content.answers import answer_blocks

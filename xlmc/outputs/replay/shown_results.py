@@ -13,7 +13,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import CellContent
 from xlmc.montecarlo.loop.stopping.stopped import Stopped
 from xlmc.montecarlo.loop.version import __version__
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.replay.changes import Closeness, is_number
 from xlmc.outputs.replay.sheets import CellDifference, SheetComparison, compare_sheets
 from xlmc.outputs.replay.versions import recorded_version

@@ -15,8 +15,8 @@ import numpy as np
 from xlmc.analysis.results.record.definition_tables import correlations_met
 from xlmc.analysis.results.statements.in_words import distribution_text, status
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.colours import DARK, LIGHT

@@ -16,8 +16,8 @@ import numpy as np
 
 from xlmc.analysis.results.statements import certainties, meaning, stated_range, statements
 from xlmc.montecarlo.definitions.stating import NOT_ROUNDED
+from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.statistics import proportion
-from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.summary import frequent_texts, shares_of

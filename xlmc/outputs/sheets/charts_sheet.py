@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.histogram import Figure, varying
 from xlmc.outputs.sheets.bins_sheet import BinsAt, histogram_chart

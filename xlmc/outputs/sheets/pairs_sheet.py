@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from xlmc.analysis.results.statements import PAIRS, Pair, pairs_of
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import BLANK, Shown
 from xlmc.outputs.document.colours import DARK

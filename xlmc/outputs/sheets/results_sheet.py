@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document.content.answers import answer_tables, opening_sentences
 from xlmc.outputs.document.content.checks import check_blocks
 from xlmc.outputs.document.content.filters import count_blocks, filter_blocks

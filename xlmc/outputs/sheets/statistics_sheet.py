@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final, TypeAlias
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import NOT_ROUNDED, Kind
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.summary import error_sentence, percent

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.simulation.simulation import weight_heading
-from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.sheets.styles import Reference

@@ -34,7 +34,7 @@ def compare_report(found: Comparison) -> StudyReport:
 
 def _sentences(found: Comparison) -> Iterator[str]:
     from xlmc.analysis.studies.comparison.verdicts import book_names, inputs_text
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.summary import share_text
 
     books, accepted, trials = book_names(found), found.acceptance, found.first.trials
@@ -68,7 +68,7 @@ def _title(each: ForecastComparison) -> str:
 
 def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
     from xlmc.analysis.studies.comparison.verdicts import amount, is_chance, tolerance_text
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
     from xlmc.outputs.summary import estimate_text, percent
 
     found, form = each.difference, each.difference.form

@@ -21,7 +21,7 @@ _MOST_NAMED = 4
 
 def decide_report(found: Decided) -> StudyReport:
     """Make the report."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
@@ -85,8 +85,8 @@ def _sentences(found: Decided) -> Iterator[str]:
 
 
 def _losing_text(losing: Sequence[Combination], forecast: str) -> str:
+    from xlmc.montecarlo.number_text import number_text
     from xlmc.montecarlo.simulation.simulation import ERROR_SHARE
-    from xlmc.montecarlo.statistics.number_text import number_text
 
     def percent(share: float) -> str:
         return f"{number_text(100.0 * share, 2)} %"

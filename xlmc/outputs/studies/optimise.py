@@ -22,7 +22,7 @@ def optimise_report(found: Optimised, again: str = "") -> StudyReport:
         found: what was found.
         again: the command that gives the same again; none where no command was typed.
     """
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import Code, Paragraph, blocks_of
     from xlmc.outputs.study_report import StudyReport
 
@@ -52,7 +52,7 @@ def _percent(share: float) -> str:
     >>> [_percent(share) for share in (0.951, 0.99999, 0.02)]
     ['95.1 %', 'more than 99.9 %', '2 %']
     """
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     if share > 0.999:
         return "more than 99.9 %"
@@ -60,7 +60,7 @@ def _percent(share: float) -> str:
 
 
 def _small(found: Optimised) -> str:
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     measure = found.goal.measure
     if measure.form.factor != 1.0:
@@ -71,7 +71,7 @@ def _small(found: Optimised) -> str:
 
 
 def _sentences(found: Optimised) -> Iterator[str]:
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     measure = found.goal.measure
     extreme = "largest" if found.goal.maximise else "smallest"
@@ -139,7 +139,7 @@ def _ended(found: Optimised) -> Iterator[str]:
 
 def _without_number(found: Optimised) -> Iterator[str]:
     """Yield how many candidates give no number, and which texts nobody says."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     if found.numberless:
         count = found.numberless
@@ -156,7 +156,7 @@ def _without_number(found: Optimised) -> Iterator[str]:
 
 def lost_sentences(found: Optimised) -> Iterator[str]:
     """Yield what is to be known of trials that errors take; nothing where they take few of any candidate."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     most = _share(found.allowed)
     if not found.is_whole:
@@ -183,7 +183,7 @@ def _share(share: float) -> str:
     >>> [_share(share) for share in (0.001, 0.25, 0.12345)]
     ['0.1 %', '25 %', '12 %']
     """
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     return f"{number_text(100.0 * share, 2)} %"
 

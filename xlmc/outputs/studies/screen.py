@@ -19,7 +19,7 @@ __all__ = ["screen_report"]
 
 def screen_report(found: Screening) -> StudyReport:
     """Make the report."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
@@ -72,7 +72,7 @@ def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[st
 
 def _at_ends(found: Screening, ends: Sequence[AtEnds]) -> Table:
     """Make a table of what holding each assumption at an end of its range costs."""
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     pairs = [
         (f"{each.name} = {number_text(value)}", cost)
@@ -89,7 +89,7 @@ def _has_evidence(found: Screening) -> bool:
 
 def _size(tolerances: float) -> str:
     """Count a move in tolerances; infinite where the forecast does not vary and so has no tolerance."""
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     return number_text(tolerances, 2) if isfinite(tolerances) else "infinite"
 
@@ -165,7 +165,7 @@ def _acceptance_text(found: Screening, cost: Cost) -> str:
 
 def _verdicts(found: Screening) -> Iterable[str]:
     from xlmc.analysis.studies.comparison.verdicts import undecided_text
-    from xlmc.montecarlo.statistics.number_text import count_text, styled_text
+    from xlmc.montecarlo.number_text import count_text, styled_text
 
     if found.ended:
         yield ended_early("screening", found.ended, "What is not in the tables was not run.")
@@ -224,7 +224,7 @@ def _ends_text(free: Sequence[str]) -> str:
 
 
 def _meaning(found: Screening) -> Iterable[str]:
-    from xlmc.montecarlo.statistics.number_text import count_text, number_text
+    from xlmc.montecarlo.number_text import count_text, number_text
 
     if found.constant:
         yield f"Formula cells that then do not vary: {', '.join(map(str, found.constant))}."

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING
 
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.seek import Found
@@ -67,7 +67,7 @@ def _blocks(found: Found) -> Iterator[str | Block]:
 def _solved(form: Form, value: float) -> str:
     """Write a number that was solved for, in twelve digits: to type it in gives the same answer."""
     from xlmc.montecarlo.definitions.stating import Kind
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     if form.kind is not Kind.DATE:
         before, after = form.affixes

@@ -38,7 +38,7 @@ def count(found: Stability) -> str:
 
 def stability_report(found: Stability, all_cells: bool = False) -> StudyReport:
     """Make the report; with `all_cells` its table has every cell, and not those alone that lose digits."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
@@ -74,7 +74,7 @@ def finding_sentences(finding: Finding) -> Iterator[str]:
 
 
 def cells(found: Stability, all_cells: bool) -> Table:
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
     from xlmc.outputs.document.parts import Table
 
     model = found.run.model
@@ -106,7 +106,7 @@ def cells(found: Stability, all_cells: bool) -> Table:
 
 
 def sentences(found: Stability) -> Iterator[str]:
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     yield (
         "Amplifies: if each assumption changes by 1 %, the cell changes by up to so many percent, in the median trial "

@@ -26,7 +26,7 @@ _TOLD: Final = 3
 
 def stress_report(found: Stressed) -> StudyReport:
     """Make the report."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
@@ -40,7 +40,7 @@ def stress_report(found: Stressed) -> StudyReport:
 
 
 def _percent(share: float) -> str:
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     return f"{number_text(share, 3)} %"
 
@@ -79,7 +79,7 @@ def _strongest(found: Stressed, forecast: Forecast, tail: Tail) -> str:
 
 def _distinguishing(found: Stressed, scenario: Scenario) -> str:
     """Say which inputs set the trials of a scenario apart."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     what = f"{scenario.forecast} {scenario.words}{_limits(found, scenario)}"
     if not scenario.inputs:
@@ -94,7 +94,7 @@ def _distinguishing(found: Stressed, scenario: Scenario) -> str:
 
 def _limits(found: Stressed, scenario: Scenario) -> str:
     """Write how many trials a scenario has, and its limits where the words have percentiles."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     form, trials = found.forms[scenario.forecast], f"{count_text(scenario.trials)} trials"
     mean = found.base[scenario.forecast].numbers["mean"]
@@ -133,7 +133,7 @@ def _title(found: Stressed, forecast: Forecast) -> str:
 
 
 def _table(found: Stressed, forecast: Forecast, ranked: list[tuple[Tail, Tail]]) -> Table:
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
     from xlmc.outputs.document.parts import Table
 
     base, form = found.base[forecast.name], found.forms[forecast.name]
@@ -155,7 +155,7 @@ def _table(found: Stressed, forecast: Forecast, ranked: list[tuple[Tail, Tail]])
 
 def _restricted(found: Stressed, tail: Tail) -> str:
     """Write the range of a tail: `up to 12.3 mph`."""
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     row = next(each for each in found.run.model.assumptions if each.name == tail.assumption)
     form = found.run.model.input_forms.get(tail.assumption)
@@ -229,14 +229,14 @@ def _chance(chance: float) -> str:
     >>> [_chance(chance) for chance in (1e-9, 0.034, 1.0)]
     ['< 0.001', '0.034', '1']
     """
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     return "< 0.001" if chance < 0.001 else number_text(chance, 2)
 
 
 def _meaning(found: Stressed) -> Iterator[str]:
     from xlmc.analysis.studies.stress import MOST
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
 
     share = _percent(found.share)
     if found.still:

@@ -16,7 +16,7 @@ __all__ = ["uncertainty_report"]
 
 def uncertainty_report(found: TwoLoops) -> StudyReport:
     """Make the report."""
-    from xlmc.montecarlo.statistics.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
@@ -31,7 +31,7 @@ def uncertainty_report(found: TwoLoops) -> StudyReport:
 
 
 def _sentences(found: TwoLoops) -> Iterator[str]:
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
 
     for each in found.forecasts:
         for band in each.told:
@@ -104,7 +104,7 @@ def _texts(band: Band, *, is_spread: bool) -> Iterator[str]:
 
 
 def _curve(found: TwoLoops, each: ForecastBands) -> Figure:
-    from xlmc.montecarlo.statistics.number_text import number_text
+    from xlmc.montecarlo.number_text import number_text
     from xlmc.outputs.document.parts import Chart, Figure, Line, Lines
 
     shares = each.shares.tolist()
@@ -128,7 +128,7 @@ def _causes(found: TwoLoops) -> Table:
 
 
 def _meaning(found: TwoLoops) -> Iterator[str]:
-    from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text, styled_text
+    from xlmc.montecarlo.number_text import count_text, fixed_text, number_text, styled_text
 
     run = found.run
     yield (

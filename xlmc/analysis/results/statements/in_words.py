@@ -28,9 +28,9 @@ from xlmc.montecarlo.definitions.scenarios import (
 )
 from xlmc.montecarlo.definitions.tables.table_rows import as_text
 from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.number_text import count_text, exact_text, styled_text
 from xlmc.montecarlo.sampling.sampling_methods import GENERATOR, METHODS
 from xlmc.montecarlo.statistics import Estimate, proportion
-from xlmc.montecarlo.statistics.number_text import count_text, exact_text, styled_text
 from xlmc.montecarlo.statistics.sample import MOST_GROUPS
 
 if TYPE_CHECKING:

@@ -20,8 +20,8 @@ from xlmc.analysis.results.statements.significant_digits import (
 from xlmc.montecarlo.definitions.stating import Kind, Role
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.parameters import range_text
+from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.montecarlo.statistics import Estimate, complement, probability_above, probability_between
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.excel.workbook.workbook import Workbook

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.number_text import count_text, fixed_text, is_far, number_text, styled_text
 from xlmc.montecarlo.statistics import Estimate, probability_between
-from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, is_far, number_text, styled_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.statistics import Sample

@@ -27,8 +27,8 @@ from xlmc.montecarlo.definitions.units import factor_between
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_limits
+from xlmc.montecarlo.number_text import exact_text
 from xlmc.montecarlo.simulation.simulation import RunResult
-from xlmc.montecarlo.statistics.number_text import exact_text
 
 __all__ = ["Inputs", "Step", "Unlike", "Variations", "cause_of", "inputs_of", "steps_between"]
 

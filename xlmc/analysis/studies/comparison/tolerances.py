@@ -13,8 +13,8 @@ from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.units import factor_between
 from xlmc.montecarlo.distributions.spelling import by_names, name_key
+from xlmc.montecarlo.number_text import number_text
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = [
     "Judgement",

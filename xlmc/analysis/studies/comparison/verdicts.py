@@ -15,8 +15,8 @@ from xlmc.analysis.studies.comparison.rivalry import Rivalry, RivalVerdict
 from xlmc.analysis.studies.comparison.tolerances import Judgement, Verdict
 from xlmc.montecarlo.definitions.forms import Form, span_text
 from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.number_text import count_text, fixed_text, number_text
 from xlmc.montecarlo.statistics import Estimate, format_estimate
-from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text
 
 __all__ = [
     "amount",

@@ -19,7 +19,7 @@ from xlmc.analysis.studies.fitting.skewed_forms import SKEWED_FORMS
 from xlmc.analysis.studies.fitting.solved_forms import SOLVED_FORMS, TRIANGULAR
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.distributions import FAMILIES
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 
 __all__ = [
     "CRITERIA",

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.number_text import count_text, fixed_text, number_text, styled_text
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.statistics import Sample
-from xlmc.montecarlo.statistics.number_text import count_text, fixed_text, number_text, styled_text
 
 __all__ = [
     "STATISTICS",

@@ -19,11 +19,11 @@ from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate, Sample
 from xlmc.montecarlo.statistics.heavy_tails import heavy_tail
-from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["Reference", "fastest_engine", "reference_of", "reference_size", "unfiltered_of"]
 

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.methods.answer import Answer, Errors, MethodResult
 from xlmc.analysis.studies.methods.points import Evaluation, assumptions_of, box_of
 from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = ["Corners"]
 

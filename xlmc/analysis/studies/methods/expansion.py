@@ -14,9 +14,9 @@ from xlmc.engine.passes.derivatives import Derivative, Derivatives
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.distributions.base import Member
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.sampling.draws import Draw
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
-from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["Expansion", "Moments", "draw_assumptions", "expansion_of"]
 

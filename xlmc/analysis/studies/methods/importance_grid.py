@@ -23,11 +23,11 @@ from xlmc.errors import SimulationError
 from xlmc.montecarlo.loop.blocks import Task
 from xlmc.montecarlo.loop.scheduling.run_spec import model_runner
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.number_text import count_text, fixed_text
 from xlmc.montecarlo.sampling.sampling_methods import Margin
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.sampling.streams import Stream
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.montecarlo.statistics.number_text import count_text, fixed_text
 
 __all__ = ["BINS", "DEFENSIVE", "ImportanceGrid"]
 

@@ -30,8 +30,8 @@ from xlmc.excel.functions.values import ERROR, TEXT
 from xlmc.montecarlo.model.draw_binding import parameter_target
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_limits
+from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["Optimised", "in_step", "widen_bounds"]
 

@@ -18,8 +18,8 @@ from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import filter_condition, upstream
+from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.montecarlo.sampling.draws import Draw
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = ["Box", "Evaluation", "Outcomes", "assumptions_of", "box_of"]
 

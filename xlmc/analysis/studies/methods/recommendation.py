@@ -24,7 +24,7 @@ from xlmc.errors import capitalised
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
-from xlmc.montecarlo.statistics.number_text import fixed_text, number_text, styled_text
+from xlmc.montecarlo.number_text import fixed_text, number_text, styled_text
 
 __all__ = ["Parts", "parts_of", "recommendation"]
 

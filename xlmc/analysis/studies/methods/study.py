@@ -32,7 +32,7 @@ from xlmc.montecarlo.definitions.amounts import as_tolerance
 from xlmc.montecarlo.definitions.forms import span_text
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 
 __all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "quick_settings", "study"]
 

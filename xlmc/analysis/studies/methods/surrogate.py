@@ -23,7 +23,7 @@ from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.model.needed import targets_of
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 
 __all__ = ["Quadratic", "Surrogate", "fit_quadratic"]
 

@@ -32,8 +32,8 @@ from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.loop.candidates import Column, Values
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.number_text import number_text
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import number_text
 from xlmc.montecarlo.statistics.proportions import least_error
 
 __all__ = ["Goal", "Measure", "Measured", "Reader", "Requirement", "apart"]

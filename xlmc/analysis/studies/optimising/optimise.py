@@ -32,11 +32,11 @@ from xlmc.montecarlo.loop.candidates import CandidateTrials, Values
 from xlmc.montecarlo.loop.stopping import Interruption
 from xlmc.montecarlo.model.loading import build_model, model_with_values
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import ERROR_SHARE, RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
 
 __all__ = ["ALLOW_LOST", "RUNS", "Excluded", "Held", "OptimiseArguments", "Optimised", "optimise"]
 

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.optimising.candidates import MARGIN, Space, Standing, Tried
 from xlmc.analysis.studies.optimising.measures import Measured
 from xlmc.montecarlo.loop.candidates import Values
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = ["MOST_ENUMERATED", "search"]
 

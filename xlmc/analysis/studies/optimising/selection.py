@@ -22,7 +22,7 @@ import numpy as np
 
 from xlmc.analysis.studies.optimising.candidates import SURE, Ended, Standing, Tried
 from xlmc.montecarlo.loop.candidates import Values
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = ["Rival", "indifference_of", "judged", "leader", "race", "rivals_of"]
 

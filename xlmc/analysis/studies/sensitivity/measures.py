@@ -11,8 +11,8 @@ from typing import Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.number_text import styled_text
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.montecarlo.statistics.number_text import styled_text
 
 __all__ = [
     "PERCENTS",

@@ -15,7 +15,7 @@ from xlmc.analysis.studies.stability.formula_trees import replace_part, terms
 from xlmc.engine.graph.nodes import Constant
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir
-from xlmc.montecarlo.statistics.number_text import styled_text
+from xlmc.montecarlo.number_text import styled_text
 
 __all__ = ["averaged_directions"]
 

@@ -17,8 +17,8 @@ from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.functions.families import function_named
 from xlmc.excel.functions.lookup.search_and_pick import POSITION
+from xlmc.montecarlo.number_text import count_text, number_text, styled_text
 from xlmc.montecarlo.statistics.heavy_tails import heavy_tail
-from xlmc.montecarlo.statistics.number_text import count_text, number_text, styled_text
 
 __all__ = ["amplifying_forecasts", "heavy_tails", "jumps", "narrow_filters", "rounded_angles"]
 

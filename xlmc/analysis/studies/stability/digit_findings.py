@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.analysis.studies.shown import Shown
 from xlmc.excel.address import Cell
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.number_text import number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult

@@ -18,7 +18,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.functions.facts import Domain
 from xlmc.excel.functions.families import function_named
-from xlmc.montecarlo.statistics.number_text import number_text, styled_text
+from xlmc.montecarlo.number_text import number_text, styled_text
 
 __all__ = ["domain_edges"]
 

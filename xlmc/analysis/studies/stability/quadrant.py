@@ -26,7 +26,7 @@ from xlmc.engine.passes.random_rounding import evaluate_changes, formula_of
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.functions.values import TEXT, Value
-from xlmc.montecarlo.statistics.number_text import styled_text
+from xlmc.montecarlo.number_text import styled_text
 
 __all__ = ["Arctangent", "Guards", "arctangents", "guards", "lost_quadrants"]
 

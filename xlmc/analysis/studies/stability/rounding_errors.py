@@ -30,7 +30,7 @@ from xlmc.analysis.studies.stability.steadying import steady_form
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.montecarlo.diagnostics.digit_watch import DUST, MOST_OF_SPREAD
-from xlmc.montecarlo.statistics.number_text import number_text, styled_text
+from xlmc.montecarlo.number_text import number_text, styled_text
 
 __all__ = ["cell_digits", "lost_digits"]
 

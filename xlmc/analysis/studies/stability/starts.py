@@ -13,7 +13,7 @@ from xlmc.engine.graph.iteration import IteratedCells
 from xlmc.engine.graph.nodes import Constant
 from xlmc.engine.passes.random_rounding import evaluate_changes, numbers_of
 from xlmc.excel.functions.values import NUMBER, Value
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 
 __all__ = ["dependence_on_starts"]
 

@@ -16,7 +16,7 @@ from xlmc.excel.workbook.structure import read_structure
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.crystal_ball.object_stream import StreamError, read_stream
 from xlmc.montecarlo.definitions.crystal_ball.stored_objects import Stored, StoredError, stored_object, stored_objects
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = ["Blocks", "Damage", "read_blocks", "unpacked"]
 

@@ -19,7 +19,7 @@ from xlmc.montecarlo.definitions.definitions import Forecast, Settings
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.stopping import LIMIT
 from xlmc.montecarlo.definitions.stopping import Precision as Goal
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.crystal_ball.stored_objects import Precision

@@ -32,7 +32,7 @@ from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.identity import Claims
 from xlmc.montecarlo.definitions.tables.table_rows import static_value
 from xlmc.montecarlo.distributions.spelling import by_names, name_key
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.number_text import number_text
 
 __all__ = ["InCells", "holds_call", "in_cell_forecasts", "read_in_cells"]
 

@@ -30,7 +30,7 @@ from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.table_rows import number_in
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import plain
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.number_text import number_text
 
 __all__ = ["in_cell_copulas", "in_cell_correlations"]
 

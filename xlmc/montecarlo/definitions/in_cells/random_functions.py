@@ -16,7 +16,7 @@ from xlmc.excel.formula import ir
 from xlmc.montecarlo.definitions.in_cells.call_arguments import is_left_out, number_of, quotient, whole_part
 from xlmc.montecarlo.definitions.in_cells.call_draws import Arguments, Drawn, Properties, Signature
 from xlmc.montecarlo.distributions import FAMILIES
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = ["INVERSES", "random_draw"]
 

@@ -22,7 +22,7 @@ from xlmc.montecarlo.definitions.in_cells.call_draws import Arguments, Drawn, Pr
 from xlmc.montecarlo.definitions.in_cells.risk_properties import is_property, properties_of
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.distributions.by_percentiles import by_percentiles
-from xlmc.montecarlo.statistics.number_text import number_text
+from xlmc.montecarlo.number_text import number_text
 
 __all__ = ["ALTERNATES", "RISK", "TRUNCATED", "risk_draw"]
 

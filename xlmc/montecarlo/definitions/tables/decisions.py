@@ -19,7 +19,7 @@ from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable
 from xlmc.montecarlo.definitions.tables.table_rows import Row, number, optional_text, rows_of
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import nearest, plain
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = ["read_decisions", "values_between"]
 

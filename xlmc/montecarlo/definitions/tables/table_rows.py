@@ -19,7 +19,7 @@ from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.stating import Named, named
 from xlmc.montecarlo.definitions.tables.reserved_tables import NEAR_MISS, DefinitionTable
 from xlmc.montecarlo.distributions.spelling import name_key, nearest, plain
-from xlmc.montecarlo.statistics.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text
 
 __all__ = [
     "Row",

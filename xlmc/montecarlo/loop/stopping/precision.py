@@ -22,8 +22,8 @@ from xlmc.montecarlo.definitions.stopping import Precision
 from xlmc.montecarlo.loop.stopping.progress import RunningMoments
 from xlmc.montecarlo.loop.stopping.rule import Columns, Observed
 from xlmc.montecarlo.model.plain_words import be, list_of
+from xlmc.montecarlo.number_text import number_text
 from xlmc.montecarlo.statistics import Estimate, Sample, percentile
-from xlmc.montecarlo.statistics.number_text import number_text
 
 __all__ = [
     "LEAST_EQUAL",

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo.definitions.stopping import AcceptedTrials
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 
 __all__ = ["Columns", "Observed", "StopRule", "UntilAccepted"]
 

@@ -17,8 +17,8 @@ from xlmc.montecarlo.loop.stopping.precision import UntilPrecise
 from xlmc.montecarlo.loop.stopping.rule import Columns, Observed, StopRule, UntilAccepted
 from xlmc.montecarlo.loop.stopping.stopped import Stopped
 from xlmc.montecarlo.model.plain_words import duration
+from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
-from xlmc.montecarlo.statistics.number_text import count_text
 
 __all__ = ["RULES", "Interruption", "Watch", "chosen_rule", "may_end_early", "refuse_other_sampling"]
 

@@ -9,7 +9,7 @@ from xlmc.analysis.results.statements.in_words import evidence_text
 from xlmc.errors import capitalised
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.diagnostics.agreement import Verdict
-from xlmc.montecarlo.statistics.number_text import count_text
+from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE, Shown
 from xlmc.outputs.document.measured import Measured

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 from xlmc.analysis.results.record.errors_met import ErrorMet, errors_met
 from xlmc.analysis.results.statements.in_words import REJECTED_SENTENCE, discards_of, limits_text
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
+from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.statistics import Estimate, proportion
-from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE
 from xlmc.outputs.document.measured import Measured

@@ -6,8 +6,8 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import changes_text
+from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.simulation.simulation import FEW
-from xlmc.montecarlo.statistics.number_text import count_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE
 from xlmc.outputs.document.measured import Measured

@@ -7,7 +7,7 @@ from decimal import Decimal
 
 import pytest
 
-from xlmc.montecarlo.statistics.number_text import (
+from xlmc.montecarlo.number_text import (
     count_text,
     decimals_of,
     exact_text,

@@ -8,7 +8,7 @@ import pytest
 from fewer_sheets import SHORT, keep_sheets
 
 SEED = 20261122
-INPUTS = {"zip": 12, "formulas": 15, "tables": 20, "runs": 6, "blocks": 21, "old": 15}
+INPUTS = {"zip": 24, "formulas": 15, "tables": 20, "runs": 6, "blocks": 21, "old": 15}
 INPUTS |= {"links": 15, "formats": 15, "types": 15, "recent": 25}
 RAN = {"zip": 0.2, "formulas": 0.4, "tables": 0.2, "runs": 0.1, "blocks": 0.5, "old": 0.2}
 RAN |= {"links": 0.3, "formats": 0.3, "types": 0.3, "recent": 0.2}

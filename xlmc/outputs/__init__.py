@@ -52,7 +52,9 @@ def _write(heading: str, blocks: list[Block], page: Page, run: Writing) -> None:
 
     @cache
     def numbers() -> Page:
-        return Page(run.book.add_worksheet(f"{heading[: _TAB - 5]} data"), Styles(run.book), ())
+        data = Page(run.book.add_worksheet(f"{heading[: _TAB - 5]} data"), Styles(run.book), ())
+        data.sheet.hide()
+        return data
 
     write_blocks(page, blocks, Charting(run.book, numbers))
     page.set_up_printing(run.name)

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import gc
 import os
 import random
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from pathlib import Path
 
@@ -28,9 +26,7 @@ from faults import full_disk as fill_up
 from simulated import simulated
 
 import xlmc.excel.workbook.writer as writer
-from xlmc.cli import main
 from xlmc.excel.workbook.target import Target
-from xlmc.montecarlo.columns import column_store
 from xlmc.montecarlo.model.loading import load
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -144,7 +140,7 @@ def typed(book, tmp_path):
 def began(folder, is_over):
     """Wait until the run keeps columns on disk, at most a minute."""
     end = time.monotonic() + 60
-    while not (found := any(folder.iterdir())) and not is_over() and time.monotonic() < end:
+    while not (found := any(folder.glob("xlmc-*"))) and not is_over() and time.monotonic() < end:
         time.sleep(0.005)
     return found
 
@@ -156,52 +152,36 @@ def temporary(tmp_path):
     return folder
 
 
-def test_a_program_that_is_asked_to_end_clears_away(small_book, tmp_path, temporary):
-    command = [sys.executable, "-P", "-c", SCRIPT, *typed(small_book, tmp_path), "-j", "2", "--scheduler", "processes"]
+def started(book, tmp_path, temporary, options=()):
+    """Start a run without end, and wait until it keeps columns on disk."""
+    command = [sys.executable, "-P", "-c", SCRIPT, *typed(book, tmp_path), *options]
     environment = os.environ | {"TMPDIR": str(temporary)}
     process = subprocess.Popen(command, cwd=ROOT, stderr=subprocess.PIPE, text=True, env=environment)
     assert began(temporary, lambda: process.poll() is not None)
-    process.send_signal(signal.SIGHUP)
+    return process
+
+
+@pytest.mark.parametrize(
+    ("number", "name", "options"),
+    [
+        (signal.SIGHUP, "SIGHUP", ["-j", "2", "--scheduler", "processes"]),
+        (signal.SIGTERM, "SIGTERM", []),
+    ],
+)
+def test_a_program_that_is_asked_to_end_clears_away(small_book, tmp_path, temporary, number, name, options):
+    process = started(small_book, tmp_path, temporary, options)
+    process.send_signal(number)
     message = process.communicate(timeout=120)[1]
-    assert process.returncode == 129
-    assert message == "xlmc: ended by SIGHUP; no file is left half-written.\n"
+    assert process.returncode == 128 + number
+    assert message == f"xlmc: ended by {name}; no file is left half-written.\n"
     assert list(temporary.iterdir()) == []
     assert [left.name for left in tmp_path.iterdir()] == ["temporary"]
 
 
-def forked(book, tmp_path, temporary):
-    """The number of a process that runs the command line; what it says goes to the file `message`."""
-
-    def work():
-        os.dup2(os.open(tmp_path / "message", os.O_WRONLY | os.O_CREAT), 2)
-        column_store.IN_MEMORY = column_store.WRITTEN = 0
-        tempfile.tempdir = str(temporary)
-        sys.argv = ["xlmc", *typed(book, tmp_path)]
-        try:
-            main()
-        except SystemExit as ended:
-            code = ended.code
-        gc.collect()  # as at the end of a program
-        os._exit(code)
-
-    child = in_child(work)
-    assert began(temporary, lambda: os.waitpid(child, os.WNOHANG)[0])
-    return child
-
-
-def test_a_run_that_is_asked_to_end_clears_away(small_book, tmp_path, temporary):
-    child = forked(small_book, tmp_path, temporary)
-    os.kill(child, signal.SIGTERM)
-    assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 143
-    assert (tmp_path / "message").read_text("utf-8") == "xlmc: ended by SIGTERM; no file is left half-written.\n"
-    assert list(temporary.iterdir()) == []
-    assert sorted(left.name for left in tmp_path.iterdir()) == ["message", "temporary"]
-
-
 def test_the_next_run_removes_the_columns_of_a_killed_one(small_book, tmp_path, temporary, monkeypatch):
-    child = forked(small_book, tmp_path, temporary)
-    os.kill(child, signal.SIGKILL)
-    os.waitpid(child, 0)
+    process = started(small_book, tmp_path, temporary)
+    process.kill()
+    process.communicate(timeout=120)
     assert list(temporary.iterdir()) != []
     monkeypatch.setattr("tempfile.tempdir", str(temporary))
     simulated(load(small_book), 100)

@@ -16,7 +16,7 @@ from xlmc.outputs.document import SECTIONS, Wanted, document_bytes
 from xlmc.outputs.document.build import build
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.measured import Measured
-from xlmc.outputs.document.parts import Bar, Bars, Bullets, Chart, Code, Figure, Line, Lines, Paragraph, Table
+from xlmc.outputs.document.parts import Bar, Bars, Bullets, Chart, Code, Figure, Heading, Line, Lines, Paragraph, Table
 from xlmc.outputs.document.sections import OUTPUTS, Section
 from xlmc.outputs.notebook import run_html
 from xlmc.outputs.page import page_text
@@ -100,3 +100,21 @@ def test_every_row_says_where_an_output_has_it_otherwise():
         if name not in ("moon", "scene-trials"):  # which the other outputs show as the report does
             assert set(row.elsewhere) == set(OUTPUTS), name
             assert all(row.elsewhere.values())
+
+
+def test_long_sections_are_in_a_report_that_asks_for_them(case_run):
+    long = [name for name, row in SECTIONS.items() if row.asked_for]
+    told = [block.text for block in build(case_run, Wanted()).blocks if isinstance(block, Heading)]
+    asked = build(case_run, Wanted(sections=long)).blocks
+    heads = [block.text for block in asked if isinstance(block, Heading) and block.level == 1]
+    assert heads == [SECTIONS[name].heading for name in long if name not in ("pairs", "limits")]  # it has no such
+    assert not {*heads} & {*told}
+    numbers = [
+        cell.found
+        for block in asked
+        if isinstance(block, Table)
+        for row in block.rows
+        for cell in row[1:]
+        if isinstance(cell, Measured)
+    ]
+    assert case_run["double"].statistics.median in numbers

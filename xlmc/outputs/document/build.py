@@ -34,7 +34,7 @@ class Wanted:
 
     Attributes:
         case: fields of the case, which win over those of the table `xlmc_case`.
-        sections: names of sections; empty for all.
+        sections: names of sections; empty for all but those that are to be asked for.
         forecasts: names of forecasts, whatever their case; empty for all.
         paper: of the pages: `letter` or `a4`.
     """
@@ -93,7 +93,8 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
     blocks: list[Block] = []
     words = vocabulary_of(workbook)
     for name, section in SECTIONS.items():
-        found = list(section.make(material)) if not wanted.sections or name in wanted.sections else []
+        is_wanted = name in wanted.sections if wanted.sections else not section.asked_for
+        found = list(section.make(material)) if is_wanted else []
         blocks += [Heading(section.title(words)), *found] if found else []
     title = case["Title"] or f"Results of {workbook.name}"
     number = case["Case number"]

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator
 
 from xlmc.analysis.results.statements.in_words import plain_text
 from xlmc.montecarlo.statistics import Estimate
-from xlmc.outputs.document.cells import NONE, Shown, shown_text
+from xlmc.outputs.document.cells import BLANK, NONE, Shown, shown_text
 from xlmc.outputs.document.drawings import FONT, drawn
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.measured import HEADS, Measured
@@ -84,7 +84,7 @@ def _table(table: Table) -> Html:
         for text in (head, *(HEADS[1:] if index in wide else ()))
     ]
     body = [
-        element("tr", *(each for index, cell in enumerate(row) for each in _cells(cell, index, at_right)))
+        element("tr", *(each for index, cell in enumerate(row) for each in _cells(cell, index, at_right, wide)))
         for row in table.rows
     ]
     inner = element(
@@ -108,11 +108,12 @@ def _has_interval(cell: Content) -> bool:
     return isinstance(cell, Measured) and cell.interval
 
 
-def _cells(cell: Content, index: int, at_right: frozenset[int]) -> Iterator[Html]:
-    """Yield the cell, and beside a number the ends of its interval where they are shown."""
+def _cells(cell: Content, index: int, at_right: frozenset[int], wide: Collection[int]) -> Iterator[Html]:
+    """Yield the cell, and beside a number the ends of its interval, or nothing, in columns that show them."""
     yield _cell(cell, index, at_right)
-    if isinstance(cell, Measured) and cell.interval:
-        for end in cell.shown[2:]:
+    if index in wide:
+        ends = cell.shown[2:] if isinstance(cell, Measured) and cell.interval else [BLANK] * len(HEADS[1:])
+        for end in ends:
             yield _cell(end, index + 1, at_right)
 
 
@@ -132,14 +133,17 @@ def _cell(cell: Content, index: int, at_right: frozenset[int]) -> Html:
 
 
 def _measured_html(cell: Measured) -> Html:
-    """Return a number and its error, which carries its full value."""
+    """Return a number and its error, which carry their full values."""
     if cell.found is None or not math.isfinite(cell.found.value):
         return element("span", cell.text)
     value, sign, error = cell.text.partition(" ± ")
-    if not error or cell.look not in _CLASSES:
+    shown = number(cell.found.value, value)
+    if not error or cell.found.error is None:
         return number(cell.found.value, cell.text)
-    parts = element("span", value), " ", element("span", f"{sign.strip()} {error}")
-    return element("data", *parts, value=plain_text(cell.found.value))
+    beside = number(cell.found.error, error)
+    if cell.look in _CLASSES:
+        return element("span", shown) + Html(" ") + element("span", f"{sign.strip()} ", beside)
+    return shown + Html(sign) + beside
 
 
 def _lines(text: str) -> Iterable[Html | str]:

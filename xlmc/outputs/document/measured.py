@@ -71,7 +71,7 @@ class Measured:
         found = self.found
         count = 4 if self.interval else 2
         if found is None:
-            return [Shown(self.nothing) if self.nothing else BLANK] * count
+            return [Shown(self.nothing) if self.nothing else BLANK, *[BLANK] * (count - 1)]
         if self.what in _SHARES:
             if self.interval and found.error == 0.0 and found.value in (0.0, 1.0):
                 return [Shown(found.value, "0%"), *[BLANK] * (count - 1)]

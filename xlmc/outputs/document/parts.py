@@ -236,6 +236,7 @@ class Table:
         widths: `(c,)` relative widths of the columns; by default what the cells need.
         caption: what it shows; empty for none.
         spans: `(c,)` how many columns of a sheet the texts of each take; by default one.
+        over: begins a row of its own, in which the headings stand on a sheet, over those of their several cells.
     """
 
     title: str
@@ -245,6 +246,7 @@ class Table:
     widths: tuple[float, ...] = ()
     caption: str = ""
     spans: tuple[int, ...] = ()
+    over: str = ""
 
     @property
     def columns(self) -> int:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record.definition_tables import correlations_met
+from xlmc.analysis.results.statements import pairs_of
 from xlmc.analysis.results.statements.in_words import (
     distribution_text,
     status,
@@ -20,11 +21,14 @@ from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.number_text import count_text, exact_text, fixed_text, number_text
 from xlmc.outputs.document.charts import influence_chart, shape_chart, shares_chart
 from xlmc.outputs.document.content.answers import answer_blocks
+from xlmc.outputs.document.content.certainty import certainty_blocks
 from xlmc.outputs.document.content.checks import check_blocks
 from xlmc.outputs.document.content.evidence import evidence_blocks
 from xlmc.outputs.document.content.filters import filter_blocks
 from xlmc.outputs.document.content.notices import notice_blocks
+from xlmc.outputs.document.content.pairs import pair_blocks
 from xlmc.outputs.document.content.scenarios import scenario_blocks
+from xlmc.outputs.document.content.statistics import statistics_blocks
 from xlmc.outputs.document.drawings import forecast_drawing
 from xlmc.outputs.document.drawn_trials import drawn_trials
 from xlmc.outputs.document.equations import equations_of
@@ -286,6 +290,22 @@ _KNOWN_WELL: Final = 5e-5
 """The error of a share that two decimals of a percentage do not show."""
 
 
+def _certainty(material: Material) -> Iterator[Block]:
+    yield Paragraph("The share of the accepted trials below, in and above each range, as it is rounded here.")
+    yield from certainty_blocks(material.simulation, material.forecasts)
+
+
+def _pairs(material: Material) -> Iterator[Block]:
+    told = {*material.forecasts}
+    pairs = pairs_of(material.simulation) if material.simulation.weighting is None else []
+    shown = [each for each in pairs if {each.first.name, each.second.name} <= told]
+    return pair_blocks(material.simulation, shown)
+
+
+def _statistics(material: Material) -> Iterator[Block]:
+    return statistics_blocks(material.simulation, material.forecasts)
+
+
 def _checks(material: Material) -> Iterator[Block]:
     return check_blocks(material.simulation)
 
@@ -352,6 +372,9 @@ MAKERS: Final[Mapping[str, Callable[[Material], Iterator[Block]]]] = {
     "scenarios": _scenarios,
     "assumptions": _assumptions,
     "sensitivity": _sensitivity,
+    "certainty": _certainty,
+    "pairs": _pairs,
+    "statistics": _statistics,
     "checks": _checks,
     "equations": _equations,
     "notices": _notices,

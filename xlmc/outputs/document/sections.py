@@ -25,11 +25,13 @@ class Section:
         heading: above it, with the words of the workbook's field in braces.
         make: makes its blocks; none where there is nothing to say.
         elsewhere: output -> where it says the same in a form of its own, or why it does not show it.
+        asked_for: a report has it only where it is asked for by its name.
     """
 
     heading: str
     make: Callable[[Material], Iterator[Block]]
     elsewhere: Mapping[str, str] = field(default_factory=dict)
+    asked_for: bool = False
 
     def title(self, words: Vocabulary) -> str:
         """Return the heading in the words of a field."""
@@ -48,6 +50,7 @@ def _in_report(name: str) -> Callable[[Material], Iterator[Block]]:
 
 _STATED: Final = {"page": "The answer", "sheets": "Results", "terminal": "the first table", "notebook": "Answers"}
 _IN_WORKBOOK: Final = dict.fromkeys(OUTPUTS, "the workbook itself shows it")
+_LONG: Final = dict.fromkeys(("terminal", "notebook"), "too long")
 _REPORT_ONLY: Final = dict.fromkeys(OUTPUTS, "it explains the report")
 
 SECTIONS: Final[dict[str, Section]] = {
@@ -88,6 +91,24 @@ SECTIONS: Final[dict[str, Section]] = {
         "What the answers depend on",
         _in_report("sensitivity"),
         {"page": "Sensitivity", "sheets": "Sensitivity", "terminal": "too long", "notebook": "xlmc.sensitivities"},
+    ),
+    "certainty": Section(
+        "Certainty of ranges",
+        _in_report("certainty"),
+        {"page": "Certainty of ranges", "sheets": "Certainty", **_LONG},
+        asked_for=True,
+    ),
+    "pairs": Section(
+        "Forecasts two at a time",
+        _in_report("pairs"),
+        {"page": "Forecasts two at a time", "sheets": "Pairs", **_LONG},
+        asked_for=True,
+    ),
+    "statistics": Section(
+        "Statistics of the accepted trials",
+        _in_report("statistics"),
+        {"page": "Statistics", "sheets": "Statistics", **_LONG},
+        asked_for=True,
     ),
     "checks": Section(
         "{checks}",

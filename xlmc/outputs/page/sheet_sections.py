@@ -16,24 +16,24 @@ from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.document.cells import NONE
 from xlmc.outputs.document.charts import shape_chart
 from xlmc.outputs.document.content.answers import answer_blocks
+from xlmc.outputs.document.content.certainty import certainty_blocks
 from xlmc.outputs.document.content.checks import check_blocks
 from xlmc.outputs.document.content.evidence import evidence_blocks
 from xlmc.outputs.document.content.filters import count_blocks, filter_blocks
 from xlmc.outputs.document.content.notices import notice_blocks
+from xlmc.outputs.document.content.pairs import pair_blocks
 from xlmc.outputs.document.content.scenarios import scenario_blocks
+from xlmc.outputs.document.content.statistics import statistics_sentence, statistics_tables
 from xlmc.outputs.document.element import EMPTY, Html, element
 from xlmc.outputs.document.html_writer import blocks_html, estimate_html, number, picture_html
+from xlmc.outputs.document.parts import Block, Heading, Paragraph
 from xlmc.outputs.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of
 from xlmc.outputs.page.flow import Flow
 from xlmc.outputs.sheets.assumptions_sheet import MOVED, NARROWED, STRATIFIED, meaning_text, write_correlations
-from xlmc.outputs.sheets.certainty_sheet import write_ranges
-from xlmc.outputs.sheets.pairs_sheet import pair_sentences, write_pair_table
-from xlmc.outputs.sheets.statistics_sheet import write_forecast
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Assumption
     from xlmc.montecarlo.simulation.simulation import RunResult
-    from xlmc.outputs.document.parts import Block
 
 __all__ = [
     "answer",
@@ -67,23 +67,15 @@ def answer(simulation: RunResult) -> Html:
 
 def certainty(simulation: RunResult, names: Collection[str] | None = None) -> Html:
     """How certain the central ranges are, of the forecasts of these names; None: of all."""
-    flow = Flow()
-    write_ranges(flow, simulation, names)
     said = "The share of the accepted trials below, in and above each central range, as it is rounded here."
-    return element(
-        "section", element("h2", "Certainty of ranges"), element("p", said, class_="remark"), flow.html, id="certainty"
-    )
+    blocks = certainty_blocks(simulation, _named(simulation, names))
+    return _section("certainty", "Certainty of ranges", (Paragraph(said, "small"), *blocks))
 
 
 def pairs(simulation: RunResult) -> Html:
     """Forecasts two at a time; nothing where there are no two that vary."""
     found = pairs_of(simulation) if simulation.weighting is None else []
-    if not found:
-        return EMPTY
-    flow = Flow()
-    write_pair_table(flow, found)
-    remarks = (element("p", said, class_="remark") for said in pair_sentences(simulation, found))
-    return element("section", element("h2", "Forecasts two at a time"), flow.html, *remarks, id="pairs")
+    return _section("pairs", "Forecasts two at a time", pair_blocks(simulation, found))
 
 
 def scenarios(simulation: RunResult) -> Html:
@@ -94,15 +86,22 @@ def scenarios(simulation: RunResult) -> Html:
 
 def statistics(simulation: RunResult, names: Collection[str] | None = None) -> Html:
     """Everything about the accepted trials of each forecast of these names; None: of all."""
-    forecasts = []
-    for result in (each for name, each in simulation.results.items() if names is None or name in names):
-        flow = Flow()
-        write_forecast(flow, result)
-        forecasts.append(element("div", flow.html, class_="forecast-statistics"))
-    said = "Of the accepted trials. The last two columns are the 95 % interval of each number."
-    return element(
-        "section", element("h2", "Statistics"), element("p", said, class_="remark"), *forecasts, id="statistics"
+    forecasts = (
+        element(
+            "div",
+            blocks_html([Heading(name, 2), *statistics_tables([simulation.results[name]])]),
+            class_="forecast-statistics",
+        )
+        for name in _named(simulation, names)
     )
+    said = f"Of the accepted trials. From … to: the 95 % interval of each number. {statistics_sentence(simulation)}"
+    head = element("h2", "Statistics"), element("p", said, class_="remark")
+    return element("section", *head, *forecasts, id="statistics")
+
+
+def _named(simulation: RunResult, names: Collection[str] | None) -> list[str]:
+    """Return those of the forecasts that have these names; None: all."""
+    return [name for name in simulation.results if names is None or name in names]
 
 
 def checks(simulation: RunResult) -> Html:

@@ -9,30 +9,28 @@ exact; a criterion of COUNTIFS is a text of 15 digits.
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from xlmc.analysis.results.statements import certainties, meaning, stated_range, statements
+from xlmc.analysis.results.statements import meaning, stated_range, statements
 from xlmc.montecarlo.definitions.stating import NOT_ROUNDED
 from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.statistics import proportion
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
-from xlmc.outputs.summary import frequent_texts, shares_of
+from xlmc.outputs.document.content.certainty import certainty_blocks
+from xlmc.outputs.sheets.xlsx_writer import write_blocks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from xlmc.analysis.results.statements import Certainty
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import RunResult
-    from xlmc.montecarlo.statistics import Estimate
     from xlmc.outputs.sheets.page import Page
     from xlmc.outputs.sheets.trials_sheet import TrialsAt
 
-__all__ = ["LAST", "WIDTHS", "write_certainty", "write_ranges"]
+__all__ = ["LAST", "WIDTHS", "write_certainty"]
 
 
 WIDTHS = (44, 38, 13, 13, 12, 12, 12)
@@ -58,51 +56,9 @@ def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None
         page.row += 1
         page.wide(meaning(simulation.model.workbook, said), "remark", LAST)
     page.heading("Certainty of ranges")
-    write_ranges(page, simulation)
+    write_blocks(page, certainty_blocks(simulation, simulation.results), last=LAST)
     _write_own_ranges(page, simulation, trials)
     page.set_up_printing(name)
-
-
-def write_ranges(page: Page, simulation: RunResult, names: Collection[str] | None = None) -> None:
-    """Write the certainty of the central range and the threshold of the forecasts of these names, the share of each
-    text and of yes and no; None: of all.
-    """
-    results = {name: each for name, each in simulation.results.items() if names is None or name in names}
-    rows = [
-        row
-        for name, result in results.items()
-        for row in (
-            *_share_lines(name, result),
-            *(_line(name, each) for each in certainties(result)),
-        )
-    ]
-    if not rows:
-        page.wide("No forecast has an answer in an accepted trial.", "paragraph", LAST)
-        return
-    page.table(["Forecast", "Range or answer", "Trials in it", "Certainty", "±", "95 % from", "to"], rows)
-
-
-def _line(name: str, found: Certainty) -> list[Shown]:
-    return _share_line(name, found.words, found.share)
-
-
-def _share_lines(name: str, result: ForecastResult) -> Iterator[list[Shown]]:
-    told, others, left = frequent_texts(shares_of(result))
-    for text, share in told.items():
-        yield _share_line(name, text, share)
-    if others:
-        count = cells.count(round(left * result.statistics.trials))
-        yield [Shown(name, look="name"), Shown(others), count, Shown(left, "0.0%"), *[cells.BLANK] * 3]
-
-
-def _share_line(name: str, words: str, share: Estimate) -> list[Shown]:
-    return [
-        Shown(name, look="name"),
-        Shown(words or "(empty)"),
-        cells.count(round(share.value * share.n)),
-        *cells.share(share),
-        *cells.interval(share, percent=True),
-    ]
 
 
 def _write_own_ranges(page: Page, simulation: RunResult, trials: TrialsAt) -> None:

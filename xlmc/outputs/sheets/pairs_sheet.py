@@ -8,14 +8,16 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from xlmc.analysis.results.statements import PAIRS, Pair, pairs_of
+from xlmc.analysis.results.statements import Pair, pairs_of
 from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document import cells
-from xlmc.outputs.document.cells import BLANK, Shown
+from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.colours import DARK
+from xlmc.outputs.document.content.pairs import pair_blocks
 from xlmc.outputs.sheets.charts_sheet import Drawing, place_drawings
 from xlmc.outputs.sheets.curves_sheet import Curves, TableAt
 from xlmc.outputs.sheets.styles import Reference, across, axis_format, bounds, finish, straight, upwards
+from xlmc.outputs.sheets.xlsx_writer import write_blocks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -27,20 +29,17 @@ if TYPE_CHECKING:
     from xlmc.outputs.sheets.page import Page
     from xlmc.outputs.sheets.trials_sheet import TrialsAt
 
-__all__ = ["POINTS", "WIDTHS", "pair_sentences", "write_pair_table", "write_pairs"]
+__all__ = ["POINTS", "WIDTHS", "write_pairs"]
 
 POINTS: Final = 1_000
 """Points in a scatter chart: more would hide each other and make the file slow to open."""
 
 WIDTHS = (*[8.14] * 14, 10.6, *[7.3] * 3)
 _LAST = 17
-_STARTS = (0, 3, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17)
 _CHART_ROWS = 12
 """Rows of the sheet that a chart covers: a page has room for the pairs of four forecasts, and a chart of each."""
 _PRINTED = 6
 """The most pairs whose charts are printed: those that have room on a page with their table."""
-_FORECASTS = 6
-"""The most forecasts; with more there are more pairs than the sheet shows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,60 +64,14 @@ def write_pairs(page: Page, book: Workbook, simulation: RunResult, curves: Curve
         page.set_up_printing(name)
         return
     page.heading("Joint probability and rank correlation")
-    write_pair_table(page, pairs)
-    sentences = pair_sentences(simulation, pairs)
+    write_blocks(page, pair_blocks(simulation, pairs), last=_LAST)
     on_paper = len(pairs) <= _PRINTED
     if not on_paper:
-        sentences.append("The scatter charts are not printed, unless you clear the print area.")
-    for sentence in sentences:
-        page.wide(sentence, "remark", _LAST)
+        page.wide("The scatter charts are not printed, unless you clear the print area.", "remark", _LAST)
     page.row += 1
     table = page.row
     place_drawings(page, _drawings(book, curves, simulation, pairs, trials), _CHART_ROWS)
     page.set_up_printing(name, printed=None if on_paper else table, columns=(0, _LAST))
-
-
-def write_pair_table(page: Page, pairs: Sequence[Pair]) -> None:
-    """Write the table."""
-    heads = ["First (A) and its limit a", "Second (B) and its limit b", "A > a and B > b", "±", "95 % from", "to"]
-    heads += ["A > a or B > b", "±", "A > B", "±", "Rank correlation", "±", "95 % from", "to"]
-    looks = ["header left", "header left", *["header"] * 12]
-    page.line([Shown(head, look=look) for head, look in zip(heads, looks, strict=True)], _STARTS, _LAST)
-    for pair in pairs:
-        page.line(_line(pair), _STARTS, _LAST)
-
-
-def _line(pair: Pair) -> list[Shown]:
-    greater = [Shown(cells.NONE), BLANK] if pair.first_greater is None else cells.share(pair.first_greater)
-    return [
-        *(Shown(said, look="name") for said in pair.said),
-        *cells.share(pair.both_above),
-        *cells.interval(pair.both_above, percent=True),
-        *cells.share(pair.either_above),
-        *greater,
-        *cells.estimate(pair.correlation),
-        *cells.interval(pair.correlation),
-    ]
-
-
-def pair_sentences(simulation: RunResult, pairs: Sequence[Pair]) -> list[str]:
-    """Return the sentences that say what the table of pairs shows."""
-    trials, ranked = {pair.trials for pair in pairs}, {pair.ranked for pair in pairs}
-    said = "A limit is the forecast's threshold or, if it has none, its median; it is used as the number printed here."
-    said += " A yes/no answer lies above its limit where it is a yes."
-    said += " Probabilities are shares of the accepted trials in which both forecasts are numbers"
-    said += (
-        f" ({count_text(min(trials))})."
-        if len(trials) == 1
-        else f" ({count_text(min(trials))} to {count_text(max(trials))})."
-    )
-    if max(ranked) < max(trials):
-        said += f" Rank correlations come from the first {count_text(max(ranked))} of them."
-    said += " A > B is given where both have the same units."
-    found = [said]
-    if len(pairs) == PAIRS and len(simulation.model.forecasts) > _FORECASTS:
-        found.append(f"At most {PAIRS} pairs of forecasts are here, the first ones of the workbook.")
-    return found
 
 
 def _drawings(

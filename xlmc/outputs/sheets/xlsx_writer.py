@@ -136,13 +136,18 @@ def _write_table(page: Page, table: Table, last: int) -> None:
         return
     starts, end = _starts(table, counts)
     if table.heads:
+        heads = table.heads
+        if table.over:
+            above = [Shown(head, look="header") for head in heads[1:]]
+            page.line([Shown(table.over, look="header left"), *above], _places(starts, counts), end)
+            heads = (heads[0], *["Value"] * (table.columns - 1))
         looks = ["header" if index in right else "header left" for index in range(table.columns)]
-        heads = [
+        line = [
             Shown(text, look=look)
-            for head, look, count in zip(table.heads, looks, counts, strict=True)
+            for head, look, count in zip(heads, looks, counts, strict=True)
             for text in (head, *HEADS[: count - 1])
         ]
-        page.line(heads, starts, end)
+        page.line(line, starts, end)
     for line in lines:
         page.line(line, starts, end)
 
@@ -156,6 +161,11 @@ def _lines_of(table: Table) -> tuple[list[list[Shown]], list[int]]:
         [[*cells, *[BLANK] * (count - len(cells))] for cells, count in zip(line, counts, strict=True)] for line in lines
     )
     return [[shown for cells in line for shown in cells] for line in filled], counts
+
+
+def _places(starts: Sequence[int], counts: Sequence[int]) -> list[int]:
+    """Return where the first cell of each column of a table stands."""
+    return [starts[sum(counts[:index])] for index in range(len(counts))]
 
 
 def _starts(table: Table, counts: Sequence[int]) -> tuple[list[int], int]:

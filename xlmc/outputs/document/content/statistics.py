@@ -1,0 +1,125 @@
+"""Statistics: everything about the accepted trials of each forecast, every number with its error and its interval."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from typing import TYPE_CHECKING, Final
+
+from xlmc.montecarlo.definitions.forms import PLAIN
+from xlmc.montecarlo.definitions.stating import NOT_ROUNDED, Kind
+from xlmc.montecarlo.number_text import number_text
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import BLANK, Shown
+from xlmc.outputs.document.measured import Measured
+from xlmc.outputs.document.parts import Block, Content, Heading, Paragraph, Table
+from xlmc.outputs.summary import error_sentence
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.loop.forecast_result import ForecastResult
+    from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.montecarlo.statistics import Estimate
+
+__all__ = ["statistics_blocks", "statistics_sentence", "statistics_tables"]
+
+_PURE: Final = ("Variance", "Skewness", "Kurtosis (normal 3)", "Coefficient of variation")
+"""Statistics that are not in the units of the forecast."""
+
+_SPANS: Final = ("Standard deviation", "Range width", "Mean standard error")
+"""Statistics that are differences: of dates they are spans of time."""
+
+_MOST_TEXTS: Final = 20
+"""Texts of one forecast whose shares stand here; the answers have them all."""
+
+
+def statistics_blocks(simulation: RunResult, names: Sequence[str]) -> Iterator[Block]:
+    """Yield the statistics of the forecasts of these names, one after the other."""
+    yield Paragraph(statistics_sentence(simulation), "small")
+    for name in names:
+        yield Heading(name, 2)
+        yield from statistics_tables([simulation.results[name]])
+
+
+def statistics_sentence(simulation: RunResult) -> str:
+    """Say what the tables have in common."""
+    return f"{error_sentence(simulation.model.workbook)} A variance has the square of the units."
+
+
+def statistics_tables(results: Sequence[ForecastResult]) -> Iterator[Table]:
+    """Yield the statistics of forecasts side by side, then their percentiles; none of answers that have none."""
+    for head, made in (("Statistic", _statistics), ("Percentile", _percentiles)):
+        found = [made(result) for result in results]
+        labels = dict.fromkeys(label for rows in found for label in rows)
+        if labels:
+            lines = ((label, *(rows.get(label, BLANK) for rows in found)) for label in labels)
+            yield Table("", (head, *map(_with_units, results)), tuple(lines), over="Forecast")
+
+
+def _with_units(result: ForecastResult) -> str:
+    units = result.definition.units
+    return f"{result.definition.name} ({units})" if units else result.definition.name
+
+
+def _statistics(result: ForecastResult) -> Mapping[str, Content]:
+    """Return label -> number."""
+    found = result.statistics
+    rows: dict[str, Content] = {"Trials": cells.count(found.trials)}
+    if result.sample.w is not None:
+        rows["Effective trials"] = cells.count(round(result.sample.effective))
+    if result.yes is not None:
+        return rows | {"Yes": _share(result.yes)}
+    if result.kind is Kind.CATEGORY:
+        return rows | {f"“{text}”": _share(share) for text, share in [*result.categories.items()][:_MOST_TEXTS]}
+    statistics = {
+        "Mean": found.mean,
+        "Median": found.median,
+        "Mode": found.mode,
+        "Standard deviation": found.standard_deviation,
+        "Variance": found.variance,
+        "Skewness": found.skewness,
+        "Kurtosis (normal 3)": found.kurtosis,
+        "Coefficient of variation": found.coefficient_of_variation,
+        "Minimum": found.minimum,
+        "Maximum": found.maximum,
+        "Range width": found.range_width,
+        "Mean standard error": found.mean_standard_error,
+    }
+    return rows | {label: _statistic(result, label, estimate) for label, estimate in statistics.items()}
+
+
+def _statistic(result: ForecastResult, label: str, found: Estimate) -> Measured:
+    form = PLAIN if label in _PURE else result.form
+    like = result.statistics.mean if form is result.form else result.statistics.variance
+    return Measured(found, "spread" if label in _SPANS else "number", form, interval=True, like=like)
+
+
+def _percentiles(result: ForecastResult) -> Mapping[str, Content]:
+    """Return label -> percentile, end of the central range, and the share above the threshold; none of answers that
+    are yes or no, or texts.
+    """
+    if result.kind in NOT_ROUNDED:
+        return {}
+    found, definition = result.statistics, result.definition
+    rows: dict[str, Content] = {
+        f"{number_text(percentile)} %": _percentile(result, each) for percentile, each in found.percentiles.items()
+    }
+    low, high = found.central
+    rows["Central range, share"] = Shown(definition.central, _percent_format(definition.central))
+    rows |= {"Central range from": _percentile(result, low), "Central range to": _percentile(result, high)}
+    if found.probability_above is not None:
+        rows["Threshold"] = cells.exact(definition.threshold, result.form)
+        rows["Above threshold"] = _share(found.probability_above)
+    return rows
+
+
+def _percentile(result: ForecastResult, found: Estimate) -> Measured:
+    return Measured(found, form=result.form, interval=True, like=result.statistics.mean)
+
+
+def _share(found: Estimate) -> Measured:
+    return Measured(found, "share", interval=True)
+
+
+def _percent_format(share: float) -> str:
+    """Percent with the decimals that the share has: `0%` for 0.51, `0.000%` for 0.99999."""
+    decimals = f"{100.0 * share:.10f}".rstrip("0").partition(".")[2]
+    return f"0{'.' * bool(decimals)}{'0' * len(decimals)}%"

@@ -5,18 +5,26 @@
     python benchmarks/mutants.py --under xlmc/excel  of one folder
 
 A mutant differs from the code in one place: a comparison, an operator, `and` or `or`, a number, True or False, a `not`.
-It is made in a copy of the repository, and pytest runs the test file of its module, if there is one, and then the
-folder that mirrors its own, until a test fails or the time is up. Those that survive are printed with file, line and
-what was changed: some change nothing that anybody could see, and the others ask for a test. This takes a minute for a
-mutant at most, so it is no part of `.ci/run`.
+It is made in a copy of the repository. pytest runs the examples in the module and the test file of its own, if there
+are any, then the folder that mirrors its own, then the files of tests in the folder above, until a test fails or the
+processor time is up (that of pytest and its children, so that a busy machine decides nothing). In the end every test
+that killed a mutant is run without one: where it fails even so, it killed nothing. Survivors are printed with file,
+line and what was changed: some change nothing that anybody could see, and the others ask for a test. This takes a
+minute for a mutant at most, so it is no part of `.ci/run`.
+
+No mutants are made of what cannot change a result: annotations and names of types, decorators (`slots=True`, the size
+of a cache), bases and keywords of a class, functions without a body (`@overload`, protocols), what only type checkers
+read, `zip(..., strict=True)`, which asserts that lengths agree, and the width of a column or a line.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
+import json
 import os
 import random
+import resource
 import shutil
 import subprocess
 import sys
@@ -24,8 +32,8 @@ import tempfile
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from math import ceil
 from pathlib import Path
-from time import monotonic
 from typing import Final
 
 ROOT: Final = Path(__file__).resolve().parents[1]
@@ -89,11 +97,24 @@ def mutants(path: Path, source: str) -> Iterator[Mutant]:
 
 def _code(node: ast.AST) -> Iterator[ast.AST]:
     """Walk what is run."""
-    if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test):
-        return
+    match node:
+        case ast.If(test=test) if "TYPE_CHECKING" in ast.unparse(test) or "__main__" in ast.unparse(test):
+            return
+        case ast.FunctionDef(body=[*_, ast.Expr(value=ast.Constant(value=value))]) if value is ...:
+            return
+        case ast.AnnAssign(annotation=annotation) if "TypeAlias" in ast.unparse(annotation):
+            return
+        case ast.keyword(arg="strict", value=ast.Constant(value=True)):
+            return
+        case ast.keyword(arg=str(name), value=ast.Constant()) if name.endswith("width"):
+            return
+        case ast.Call(func=ast.Attribute(attr="set_column")):
+            return
+    left_out = {"annotation", "returns", "decorator_list", "bases"}
+    left_out |= {"keywords"} if isinstance(node, ast.ClassDef) else set()
     yield node
     for name, value in ast.iter_fields(node):
-        if name in ("annotation", "returns", "decorator_list", "bases", "type_params"):
+        if name in left_out:
             continue
         for child in value if isinstance(value, list) else [value]:
             if isinstance(child, ast.AST) and not isinstance(child, ast.JoinedStr | ast.MatchValue):
@@ -119,39 +140,64 @@ def _other_constant(value: object) -> str:
     return repr(value * 1.5 if value else 1.0) if isinstance(value, float) else ""
 
 
-def tests_of(path: Path) -> list[str]:
-    """Return what pytest is given for a module: its own file of tests, if there is one, and the folder that mirrors."""
+def tests_of(path: Path) -> list[list[str]]:
+    """Return what pytest is given for a module in turn: its examples and file, its folder, the files above."""
     parts = path.with_suffix("").parts[1:]
     folder = Path("tests", *parts[:-1])
     own = folder / f"test_{parts[-1]}.py"
     while not any((ROOT / folder).glob("test_*.py")) and folder != Path("tests"):
         folder = folder.parent
-    found = [own] if (ROOT / own).exists() else []
-    return [str(each) for each in (found if folder == Path("tests") else [*found, folder])]
+    examples = [path] if (ROOT / path).exists() and ">>>" in (ROOT / path).read_text(encoding="utf-8") else []
+    first = [*examples, *([own] if (ROOT / own).exists() else [])]
+    above = sorted(each.relative_to(ROOT) for each in (ROOT / folder.parent).glob("test_*.py"))
+    rest = [] if folder == Path("tests") else [[folder], above if folder.parent != Path("tests") else []]
+    return [[str(each) for each in tests] for tests in [first, *rest] if tests]
 
 
-def fate(mutant: Mutant, copy: Path, seconds: float) -> str:
-    """Return `killed`, `survived`, `not ended` in time, or `no tests`, of a mutant in a copy of the repository."""
-    tests, file = tests_of(mutant.path), copy / mutant.path
-    if not tests:
-        return "no tests"
-    source, ends = file.read_text(encoding="utf-8"), monotonic() + seconds
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "--no-header", "--tb=no", "-p", "no:cacheprovider"]
+def failures(tests: Sequence[str], copy: Path, seconds: float, *options: str) -> set[str] | None:
+    """Return the tests that fail in a copy of the repository, or None where the processor time is up first."""
+    before, cache = processor_time(), copy / ".cache_of_pytest"
+    shutil.rmtree(cache, ignore_errors=True)
+    limit = f"import resource as r, runpy; r.setrlimit(r.RLIMIT_CPU, ({ceil(seconds)},) * 2); "
+    start = [sys.executable, "-c", limit + "runpy.run_module('pytest', run_name='__main__')"]
+    command = [*start, "-q", "--no-header", "--tb=no", "-o", f"cache_dir={cache}", *options, *tests]
     environment = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
+    try:  # a process that sleeps for ever uses no processor time
+        done = subprocess.run(
+            command, cwd=copy, env=environment, timeout=20 * seconds, capture_output=True, check=False
+        )
+    except subprocess.TimeoutExpired:
+        return None
+    if done.returncode in (0, 5):  # all passed, or there are none
+        return set()
+    if processor_time() - before >= seconds:
+        return None
+    failed = cache / "v" / "cache" / "lastfailed"
+    return set(json.loads(failed.read_text(encoding="utf-8"))) if failed.exists() else {*tests}
+
+
+def processor_time() -> float:
+    """Return the seconds of processor time of all children so far."""
+    used = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return used.ru_utime + used.ru_stime
+
+
+def fate(mutant: Mutant, copy: Path, seconds: float) -> tuple[str, set[str]]:
+    """Return `killed`, `survived`, `time up` or `no tests` of a mutant in a copy, and the tests that fail."""
+    file, ends = copy / mutant.path, processor_time() + seconds
+    tests = tests_of(mutant.path)
+    source = file.read_text(encoding="utf-8")
     file.write_text(mutant.text(source), encoding="utf-8")
     try:
         for each in tests:  # the file by itself first: to collect a large folder takes long
-            left = max(0.1, ends - monotonic())
-            done = subprocess.run(
-                [*command, each], cwd=copy, env=environment, timeout=left, capture_output=True, check=False
-            )
-            if done.returncode:
-                return "killed"
-    except subprocess.TimeoutExpired:
-        return "not ended"
+            failed = failures(each, copy, max(1.0, ends - processor_time()), "-x")
+            if failed is None:
+                return "time up", set()
+            if failed:
+                return "killed", failed
     finally:
         file.write_text(source, encoding="utf-8")
-    return "survived"
+    return ("survived" if tests else "no tests"), set()
 
 
 def main(given: Sequence[str] | None = None) -> None:
@@ -160,25 +206,35 @@ def main(given: Sequence[str] | None = None) -> None:
     parser.add_argument("-n", type=int, default=30, help="how many mutants")
     parser.add_argument("--seed", type=int, default=random.SystemRandom().randrange(10**6), help="which ones")
     parser.add_argument("--under", default="xlmc", help="folder or file to mutate")
-    parser.add_argument("--seconds", type=float, default=60.0, help="for the tests of each")
+    parser.add_argument("--seconds", type=float, default=60.0, help="of processor time for the tests of each")
     asked = parser.parse_args(given)
     under = Path(asked.under)
     files = [under] if under.suffix else sorted(path.relative_to(ROOT) for path in (ROOT / under).rglob("*.py"))
     every = [each for path in files for each in mutants(path, (ROOT / path).read_text(encoding="utf-8"))]
     chosen = random.Random(asked.seed).sample(every, min(asked.n, len(every)))
     print(f"{len(chosen)} of {len(every):,} mutants of {under}, seed {asked.seed}", flush=True)
-    counts: Counter[str] = Counter()
+    ends: list[tuple[str, Mutant, set[str]]] = []
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder, "copy")
         left_out = shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*_cache")
         shutil.copytree(ROOT, copy, ignore=left_out)
-        for mutant in chosen:
-            counts[end := fate(mutant, copy, asked.seconds)] += 1
+        for number, mutant in enumerate(chosen, 1):
+            end, failed = fate(mutant, copy, asked.seconds)
+            ends.append((end, mutant, failed))
             if end != "killed":
-                print(f"{end}: {mutant}", flush=True)
+                print(f"{number}: {end}: {mutant}", flush=True)
+        killers = sorted(set().union(*(failed for _, _, failed in ends)))
+        always = failures(killers, copy, 60.0 + 20.0 * len(killers)) if killers else set()
+    counts: Counter[str] = Counter()
+    for end, mutant, failed in ends:
+        without = end == "killed" and failed <= (always or set())
+        counts["fails without it" if without else end] += 1
+        if without:
+            print(f"fails without it: {mutant}: {', '.join(failed)}", flush=True)
     share = counts["killed"] / max(1, len(chosen))
+    error = (share * (1.0 - share) / max(1, len(chosen))) ** 0.5
     rest = ", ".join(f"{count} {end}" for end, count in counts.items() if end != "killed") or "none left"
-    print(f"killed: {counts['killed']} of {len(chosen)}, {share:.0%}; {rest}")
+    print(f"killed: {counts['killed']} of {len(chosen)}, {share:.1%} with a standard error of {error:.1%}; {rest}")
 
 
 if __name__ == "__main__":

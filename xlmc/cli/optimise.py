@@ -134,7 +134,7 @@ def _again(
     """Return the command that gives the same again."""
     goal = found.goal
     parts = ["xlmc", "optimise", book.name, "--maximise" if goal.maximise else "--minimise", goal.measure.text]
-    parts += [part for each in found.held for part in ("--subject-to", each.requirement.text)]
+    parts += [part for each in found.requirements for part in ("--subject-to", each.requirement.text)]
     parts += [part for name in decision for part in ("--decision", name)]
     parts += [] if indifference is None else ["--indifference", repr(indifference)]
     parts += [] if allow_lost == 0.1 else ["--allow-lost", repr(allow_lost)]
@@ -147,7 +147,7 @@ def _doubts(found: Optimised) -> list[str]:
     """Return why the answer must not be used."""
     from xlmc.outputs.studies.optimise import lost_sentences
 
-    missed = [each.requirement.text for each in found.held if each.chance <= 0.5]
+    missed = [each.requirement.text for each in found.requirements if each.chance <= 0.5]
     found_one = any(each.meets for each in found.rivals)
     none = "The best of the search" if found_one else "No candidate that was found"
     verb = "does not meet" if found_one else "meets"

@@ -21,6 +21,28 @@ CELLS = {"A1": 1.0, "A2": 1.0, "A3": 0.0, "A4": 2.0}
         ("=IF(A1>0.5,1,2)", False),
         ("=IF(A1>0.5,1,A1)", False),
         ('=IF(A1>0.5,1,"x")', False),
+        ("=IF(A1>0.5,1,A1>0.2)", True),
+        ("=IF(A1>0.5,A1>0.7,0)", True),
+        ("=IF(A1>0.5,1)", True),
+        ("=IF(A1>0.5,B2,0)", True),
+        ("=IF(A1>0.5,1,A9)", True),  # a blank cell gives 0
+        ("=IF(A1>0.5,1,NA())", True),
+        ("=IFERROR(IF(A1>0.5,1,0),0)", True),
+        ("=IFERROR(IF(A1>0.5,1,0),2)", False),
+        ("=CHOOSE(1+(A1>0.5),0,1)", True),
+        ("=CHOOSE(1+(A1>0.5),0,2)", False),
+        ("=IFS(A1>0.5,1,A1>0.2,FALSE)", True),
+        ("=(A1>0.2)*(A1<0.5)", True),
+        ("=(A1>0.2)*(A1<0.5)*2", False),
+        ("=(A1>0.2)*A1", False),
+        ("=--(A1>0.5)", True),
+        ("=-(A1>0.5)", False),
+        ("=-(-A1)", False),
+        ("=(A1>0.2)+(A1<0.5)", False),  # 0, 1 or 2
+        ("=MAX(A1>0.9,A1<0.1)", True),
+        ("=MAX(A1>0.9,A1)", False),
+        ("=N(A1>0.5)", True),
+        ("=NA()", False),
         ("=A1", False),
         ("=A1*0", False),
         ("=A2", False),  # a number known before the run
@@ -29,7 +51,7 @@ CELLS = {"A1": 1.0, "A2": 1.0, "A3": 0.0, "A4": 2.0}
     ],
 )
 def test_formulas_of_two_values(book, formula, two):
-    model = book({**CELLS, "B1": formula}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"x": "B1"})
+    model = book({**CELLS, "B1": formula, "B2": "=A1>0.6"}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"x": "B1"})
     assert model.two_valued == (frozenset({"x"}) if two else frozenset())
 
 

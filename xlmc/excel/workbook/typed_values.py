@@ -7,6 +7,7 @@ import io
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from math import isinf
 from pathlib import Path
 from typing import Final
 
@@ -20,6 +21,7 @@ __all__ = ["ValueRows", "read_value_rows", "typed_change", "typed_value"]
 _LOGICALS: Final = {"TRUE": True, "FALSE": False}
 _ERRORS: Final = {code.text: code for code in ErrorCode if code not in (ErrorCode.GETTING_DATA, ErrorCode.SPILL)}
 """Errors that Excel takes as such where they are typed."""
+_PLAIN: Final = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)(e[+-]?\d+)?", re.ASCII | re.IGNORECASE)
 _COMMA: Final = re.compile(r"[+-]?\d+,\d+")
 _THOUSANDS: Final = re.compile(r"[+-]?\d{1,3},\d{3}")
 _NOTE: Final = "#"
@@ -66,12 +68,8 @@ def typed_value(text: str, book: Workbook) -> CellValue:
         raise ValueError(f"{bare!r} is a formula: type its value")
     if _COMMA.fullmatch(bare) and not _THOUSANDS.fullmatch(bare):
         raise ValueError(f"{bare!r} is no number: decimals stand behind a point, as in {bare.replace(',', '.')}")
-    try:
-        number = float(bare) if bare[-1].isdigit() or bare[-1] == "." else None
-    except ValueError:
-        number = None
-    found = parse_number(bare, book.date1904) if number is None else number
-    return text if found is None else found
+    found = float(bare) if _PLAIN.fullmatch(bare) else parse_number(bare, book.date1904)
+    return text if found is None or isinf(found) else found
 
 
 def typed_change(book: Workbook, text: str) -> tuple[Cell, CellValue]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from xlmc.analysis.studies.methods import STATISTICS, Curve, Runs, Study, need, recommendation
-from xlmc.analysis.studies.methods.need import choice, shortfall
+from xlmc.analysis.studies.methods.need import choice, worst_error
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import finite
 from xlmc.outputs.methods.methods_tables import cannot
@@ -54,7 +54,7 @@ def _curve(found: Study, curve: Curve) -> dict[str, Any]:
 
     drawn = curve not in found.once
     wanted = need(found, curve) if drawn and found.varying else None
-    near = shortfall(found, curve) if curve.answers and found.varying and not drawn else None
+    near = worst_error(found, curve) if curve.answers and found.varying and not drawn else None
     return {
         "method": curve.method.key,
         "name": curve.method.name,

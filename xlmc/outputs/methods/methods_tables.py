@@ -9,7 +9,7 @@ import numpy as np
 
 from xlmc.analysis.studies.methods import STATISTICS, Curve, Method, Runs, Study, need
 from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
-from xlmc.analysis.studies.methods.need import shortfall
+from xlmc.analysis.studies.methods.need import worst_error
 from xlmc.montecarlo.definitions.forms import Form, span_text
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.number_text import count_text, fixed_text, number_text, styled_text
@@ -106,7 +106,7 @@ def near_text(study: Study, curve: Curve) -> str:
     """Whether the answer of a method that gives only one is near enough."""
     if not study.varying:
         return _NONE
-    return {"yes": "near enough", "no": "never", "unknown": "cannot tell"}[shortfall(study, curve).reaches]
+    return {"yes": "near enough", "no": "never", "unknown": "cannot tell"}[worst_error(study, curve).reaches]
 
 
 def _need_text(study: Study, curve: Curve) -> str:

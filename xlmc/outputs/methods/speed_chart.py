@@ -17,7 +17,7 @@ import numpy as np
 from xlmc.analysis.studies.methods import Curve, Study
 from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
 from xlmc.analysis.studies.methods.law import law
-from xlmc.analysis.studies.methods.need import Choice, Need, choice, reach_of, seconds_of, shortfall
+from xlmc.analysis.studies.methods.need import Choice, Need, choice, reach_of, seconds_of, worst_error
 from xlmc.montecarlo.number_text import number_text
 from xlmc.outputs.methods.methods_tables import near_text
 
@@ -243,7 +243,7 @@ def _line(study: Study, curve: Curve, work: Work, scale: float, found: Choice, f
 
 def _kind(study: Study, curve: Curve, found: Choice) -> tuple[str, str]:
     """Return the number that a method has most trouble with."""
-    worst = shortfall(study, curve) if curve in study.once else found.needs[curve]
+    worst = worst_error(study, curve) if curve in study.once else found.needs[curve]
     return worst.forecast, worst.statistic
 
 
@@ -278,7 +278,7 @@ def _needs(study: Study, curve: Curve, found: Choice, finer: Choice) -> str:
     """`1 % in 0.35 s, 0.1 % in 35 s`, or `never`."""
     texts = [_accuracy_text(study, _scale(study) / part) for part in (1.0, FINER)]
     if curve in study.once:
-        near = shortfall(study, curve)
+        near = worst_error(study, curve)
         if near.reaches == "unknown":
             return f"cannot tell at {texts[0]}"
         return "never" if near.reaches == "no" else f"within {texts[0]}" + _also(near.times, texts[1])
@@ -315,7 +315,7 @@ def _mark(study: Study, height: float, accuracy: tuple[str, float, bool], found:
     """
     text = f"{_accuracy_text(study, height)}{more}"
     asked = replace(study, accuracy=accuracy)
-    near = [c.method.name for c in study.once if c.answers and shortfall(asked, c).reaches == "yes"]
+    near = [c.method.name for c in study.once if c.answers and worst_error(asked, c).reaches == "yes"]
     apart = tuple(f"near enough, as the reference shows: {name}" for name in near)
     if not found.cheapest:
         return (text, *apart)

@@ -8,7 +8,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from xlmc.analysis.studies.optimising import Held, Optimised, Rival
+    from xlmc.analysis.studies.optimising import Optimised, RequirementResult, Rival
     from xlmc.outputs.document.parts import Block
     from xlmc.outputs.study_report import StudyReport
 
@@ -87,9 +87,9 @@ def _sentences(found: Optimised) -> Iterator[str]:
         yield f"{_capital(measure.text)} is {extreme}, {measure.shown(found.found)}, with {best}."
     else:
         yield from _missing(found, best)
-    for each in found.held:
-        yield _held_text(each)
-    others = "no other that was tried" if not found.held else "no other that was tried and meets this as surely"
+    for each in found.requirements:
+        yield _requirement_text(each)
+    others = "no other that was tried" if not found.requirements else "no other that was tried and meets this as surely"
     if found.tried == 1:
         yield "It is the only candidate."
     elif found.holds:
@@ -97,10 +97,10 @@ def _sentences(found: Optimised) -> Iterator[str]:
             f"Of {count_text(found.tried)} candidates, {others} is better by more than {_small(found)}, a difference "
             f"that does not matter here: {_percent(found.confidence)} confidence."
         )
-    better = [each for each in found.rivals if each.meets and each.told_apart and each.ahead > found.indifference]
+    better = [each for each in found.rivals if each.meets and each.significant and each.ahead > found.indifference]
     for rival in better[: int(found.holds)]:
         yield f"Fresh trials show {_with_values(found, rival.candidate)} to be better: give the search more --runs."
-    alike = [each for each in found.rivals if each.meets and not each.told_apart]
+    alike = [each for each in found.rivals if each.meets and not each.significant]
     if alike:
         named = "; ".join(_with_values(found, each.candidate) for each in alike[:4])
         more = f"; and {len(alike) - 4} more" if len(alike) > 4 else ""
@@ -192,7 +192,7 @@ def _capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def _held_text(each: Held) -> str:
+def _requirement_text(each: RequirementResult) -> str:
     left, requirement = each.requirement.left, each.requirement
     shown = left.shown(each.found)
     if each.exact:
@@ -215,19 +215,19 @@ def _blocks(found: Optimised) -> Iterator[Block]:
         return
     title = "The best decisions" if found.holds else "The decisions"
     yield Table(title, ("Decision", "Value", "Units", "Cell"), tuple(rows), (1,))
-    if found.held:
+    if found.requirements:
         stand = [
             (
                 each.requirement.text,
                 each.requirement.left.shown(each.found),
                 "" if each.exact else _percent(each.chance),
             )
-            for each in found.held
+            for each in found.requirements
         ]
         yield Table("What is required", ("Requirement", "Found", "Holds with"), tuple(stand), (1, 2))
     if found.rivals:
-        heads = (*(each.name for each in found.decisions), "Better by", "Told apart", "Meets the requirements")
-        heads = heads if found.held else heads[:-1]
+        heads = (*(each.name for each in found.decisions), "Better by", "Significant", "Meets the requirements")
+        heads = heads if found.requirements else heads[:-1]
         lines = [_rival_row(found, each)[: len(heads)] for each in found.rivals]
         yield Table("Others that come near", heads, tuple(lines), tuple(range(len(found.decisions) + 1)))
     if len(found.curve) > 1:
@@ -249,9 +249,9 @@ def _rival_row(found: Optimised, each: Rival) -> tuple[str, ...]:
     form = found.goal.measure.form
     sign = "+" if each.ahead > 0.0 else ""
     ahead = f"{sign}{form.spread(Estimate(each.ahead, each.error))}"
-    apart = "yes" if each.told_apart else "no"
+    significant = "yes" if each.significant else "no"
     values = (one.shown(at) for one, at in zip(found.decisions, each.candidate, strict=True))
-    return (*values, ahead, apart, "yes" if each.meets else "no")
+    return (*values, ahead, significant, "yes" if each.meets else "no")
 
 
 def _meaning(found: Optimised) -> str:
@@ -285,7 +285,7 @@ def _as_json(found: Optimised, again: str) -> dict[str, object]:
                 "found": estimate_json(each.found),
                 "probability": each.chance,
             }
-            for each in found.held
+            for each in found.requirements
         ],
         "indifference": found.indifference,
         "confidence": found.confidence,
@@ -293,7 +293,7 @@ def _as_json(found: Optimised, again: str) -> dict[str, object]:
             {
                 "values": _contents(found, each.candidate),
                 "better_by": {"value": each.ahead, "error": each.error},
-                "told_apart": each.told_apart,
+                "significant": each.significant,
                 "meets_requirements": each.meets,
                 "probability_better": each.chance,
                 "trials": each.trials,

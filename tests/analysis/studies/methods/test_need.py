@@ -11,7 +11,7 @@ import pytest
 from xlmc.analysis.studies.methods import recommendation, study
 from xlmc.analysis.studies.methods.curve import Rms, in_order, rms_of
 from xlmc.analysis.studies.methods.law import law
-from xlmc.analysis.studies.methods.need import choice, need, seconds_of, shortfall
+from xlmc.analysis.studies.methods.need import choice, need, seconds_of, worst_error
 from xlmc.analysis.studies.methods.recommendation import parts_of
 from xlmc.analysis.studies.methods.study import LENGTHS, STEP, ladder_of
 
@@ -84,7 +84,7 @@ def test_the_parts_of_a_miss_are_measured(small):
     """Without filters the mean is 8.897 mph, with them 4.742 (2·10⁹ trials made independently of this project)."""
     first = curve_of(small, "taylor-1")
     found = replace(
-        shortfall(small, first), statistic="mean", error=first.lengths[0].errors["Nissan impact speed", "mean"].bias
+        worst_error(small, first), statistic="mean", error=first.lengths[0].errors["Nissan impact speed", "mean"].bias
     )
     parts = parts_of(small, found)
     assert parts.filters == pytest.approx(8.897 - 4.742, abs=0.06)
@@ -102,7 +102,7 @@ def test_filters_that_hardly_reject_are_not_blamed_for_curvature(book):
     )
     found = study(model, reference_trials=1 << 16, trials=1 << 10, replicates=2)
     first = curve_of(found, "taylor-1")
-    parts = parts_of(found, shortfall(found, first))
+    parts = parts_of(found, worst_error(found, first))
     assert abs(parts.formulas) > 20.0 * abs(parts.filters)
     (message,) = [each for each in recommendation(found) if each.startswith("Taylor, first order misses")]
     assert "because it takes every curve for straight" in message.split("; ")[-1]
@@ -125,7 +125,7 @@ def test_an_answer_that_the_reference_cannot_judge_is_left_open(small):
     own = small.tolerance("Nissan impact speed")
     near = with_errors(first, lambda _, each: Rms(0.9 * own, own, 0.9 * own, np.nan, 1))
     judged = replace(small, once=tuple(near if curve is first else curve for curve in small.once))
-    assert shortfall(judged, near).reaches == "unknown"
+    assert worst_error(judged, near).reaches == "unknown"
     assert any(
         "cannot tell whether Taylor, first order is near enough" in message for message in recommendation(judged)
     )

@@ -9,7 +9,7 @@ import pytest
 from xlmc.analysis.studies.methods import STATISTICS, recommendation, study
 from xlmc.analysis.studies.methods.converged_reference import reference_of
 from xlmc.analysis.studies.methods.curve import rms_of, runs_of, slope_of
-from xlmc.analysis.studies.methods.need import need, reach_of, shortfall
+from xlmc.analysis.studies.methods.need import need, reach_of, worst_error
 from xlmc.analysis.studies.methods.optimised import in_step
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
 from xlmc.errors import SimulationError
@@ -126,7 +126,7 @@ def test_without_filters_the_differential_method_may_do(straight):
     text = "\n".join(recommendation(found))
     assert "Taylor, first order and Taylor, second order are near enough, and need no draws at all" in text
     first = next(curve for curve in found.once if curve.method.key == "taylor-1")
-    assert shortfall(found, first).times < 1.0
+    assert worst_error(found, first).times < 1.0
     sobol, plain = (next(c for c in found.curves if c.method.key == key) for key in ("sobol", "mc"))
     assert sobol.lengths[-1].shares["mean"] < 0.2 * plain.lengths[-1].shares["mean"]
 

@@ -80,7 +80,7 @@ def test_requirements_hold_and_more_is_not_asked_than_that(book):
         maximise="mean of Profit", subject_to=["P5 of Profit >= -70", "2*Order <= 90"], trials=40_000
     )
     assert found.values["Order"] in (31, 30)
-    asked, exact = found.held
+    asked, exact = found.requirements
     assert asked.chance > 0.95
     assert abs(asked.found.value - (25 - 3 * found.best[0])) < 4 * asked.found.error
     assert exact.exact
@@ -91,7 +91,7 @@ def test_requirements_hold_and_more_is_not_asked_than_that(book):
 def test_a_requirement_that_none_meets_is_told(book):
     found = xlmc.load(book()).optimise(maximise="mean of Profit", subject_to=["P5 of Profit >= 100"], trials=500)
     assert not found.meets
-    assert found.held[0].chance < 0.01
+    assert found.requirements[0].chance < 0.01
     with pytest.raises(SimulationError, match="No combination of the decisions meets"):
         xlmc.load(book()).optimise(maximise="mean of Profit", subject_to=["Order >= 101"], trials=500)
 
@@ -412,7 +412,7 @@ def test_an_equality_computes_a_decision_from_the_others(tmp_path):
     least = math.sqrt(16 / 21)
     assert abs(found.found.value - least) < 3 * found.found.error + found.indifference
     assert [*found.values.values()] == pytest.approx([16 / 21, 4 / 21, 1 / 21], abs=0.03)
-    assert found.held[0].exact
+    assert found.requirements[0].exact
     assert found.meets
     assert "A + B + C = 1: met, 1." in str(found)
     two = ["A + B + C = 1", "A - 2*B = 0"]
@@ -441,7 +441,7 @@ def test_rounding_of_decisions_is_no_miss(book):
         maximise="mean of Profit", subject_to=["Order + Price <= 0.3", "Order + Price = 0.3"], trials=500
     )
     assert found.meets
-    assert all(each.chance == 1.0 for each in found.held)
+    assert all(each.chance == 1.0 for each in found.requirements)
 
 
 @pytest.mark.parametrize("more", [(), (ORDER,)])

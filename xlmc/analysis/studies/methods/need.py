@@ -22,15 +22,15 @@ __all__ = [
     "NO_TIME",
     "Choice",
     "Need",
-    "Shortfall",
     "Verdict",
+    "WorstError",
     "choice",
     "chosen_of",
     "need",
     "reach_of",
     "seconds_of",
-    "shortfall",
     "tied",
+    "worst_error",
 ]
 
 Each = TypeVar("Each")
@@ -80,8 +80,8 @@ class Need:
 
 
 @dataclass(frozen=True, slots=True)
-class Shortfall:
-    """The number that an answer given once misses by the most.
+class WorstError:
+    """The largest error, over its tolerance, of a method that gives its answer once.
 
     Attributes:
         error: in the forecast's units, with its sign.
@@ -138,13 +138,13 @@ def _verdict(low: float, high: float, tolerance: float) -> Verdict:
     return "no" if low > tolerance else "yes" if high <= tolerance else "unknown"
 
 
-def shortfall(study: Study, curve: Curve) -> Shortfall:
+def worst_error(study: Study, curve: Curve) -> WorstError:
     """Return the worst number of an answer that was given once; a number that is surely not good enough comes first."""
     order = ("yes", "unknown", "no")
-    return max(_shortfalls(study, curve), key=lambda each: (order.index(each.reaches), each.times))
+    return max(_single_errors(study, curve), key=lambda each: (order.index(each.reaches), each.times))
 
 
-def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
+def _single_errors(study: Study, curve: Curve) -> Iterator[WorstError]:
     """Every number; the reference's error counts for as many comparisons as there are numbers and such methods."""
     from scipy.special import ndtri
 
@@ -155,11 +155,11 @@ def _shortfalls(study: Study, curve: Curve) -> Iterator[Shortfall]:
         error = curve.lengths[-1].errors[kind]
         tolerance = study.tolerance(kind[0])
         if not np.isfinite(error.value):
-            yield Shortfall(*kind, np.nan, error.error, np.inf, "no")
+            yield WorstError(*kind, np.nan, error.error, np.inf, "no")
             continue
         own = wide * float(np.nan_to_num(error.error))
         reaches = _verdict(error.value - own, error.value + own, tolerance)
-        yield Shortfall(*kind, error.bias, error.error, error.value / tolerance, reaches)
+        yield WorstError(*kind, error.bias, error.error, error.value / tolerance, reaches)
 
 
 def reach_of(study: Study, curve: Curve, runs: Runs, kind: tuple[str, str]) -> tuple[float, float, float]:

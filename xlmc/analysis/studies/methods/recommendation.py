@@ -16,7 +16,7 @@ import numpy as np
 from xlmc.analysis.results.record.make import simulate_command
 from xlmc.analysis.studies.methods.answer import percent_words, rounded_text, seconds_text, statistic_words, trials_text
 from xlmc.analysis.studies.methods.curve import Curve
-from xlmc.analysis.studies.methods.need import ENGINE_READY, NO_TIME, Choice, Need, Shortfall, choice, shortfall
+from xlmc.analysis.studies.methods.need import ENGINE_READY, NO_TIME, Choice, Need, WorstError, choice, worst_error
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO, Sampled
 from xlmc.analysis.studies.methods.study import Study
 from xlmc.analysis.studies.steps import ended_early
@@ -69,7 +69,7 @@ def _paragraphs(study: Study) -> list[str]:
             else "No forecast is a number in more than one trial: there is nothing to compute with any method."
         ]
     found = choice(study)
-    once = [(curve, shortfall(study, curve)) for curve in study.once if curve.answers]
+    once = [(curve, worst_error(study, curve)) for curve in study.once if curve.answers]
     verdict, *others = _drawing_text(study, found)
     sentences = [verdict, _accuracy_text(study), *_heavy_text(study), *others, *_once_text(once)]
     sentences += [_never_text(study, curve, each) for curve, each in found.needs.items() if each.reaches == "no"]
@@ -202,7 +202,7 @@ def _upwards(trials: float) -> int:
     return math.ceil(trials / size) * size
 
 
-def _once_text(once: Sequence[tuple[Curve, Shortfall]]) -> list[str]:
+def _once_text(once: Sequence[tuple[Curve, WorstError]]) -> list[str]:
     enough = [curve for curve, found in once if found.reaches == "yes"]
     if not enough:
         return []
@@ -235,7 +235,7 @@ def _unknown_text(curve: Curve, found: Need) -> str:
     )
 
 
-def _undecided_text(study: Study, curve: Curve, found: Shortfall) -> str:
+def _undecided_text(study: Study, curve: Curve, found: WorstError) -> str:
     off, own, wanted = (
         study.amount(found.forecast, each) for each in (abs(found.error), found.own, study.tolerance(found.forecast))
     )
@@ -281,7 +281,7 @@ class Parts:
     error: float
 
 
-def parts_of(study: Study, found: Shortfall) -> Parts | None:
+def parts_of(study: Study, found: WorstError) -> Parts | None:
     """Return the parts of an error; None if there are no filters that reject anything, or no answer without them."""
     if study.unfiltered is None:
         return None
@@ -292,7 +292,7 @@ def parts_of(study: Study, found: Shortfall) -> Parts | None:
     return Parts(filters, found.error - filters, float(np.hypot(error, np.nan_to_num(found.own))))
 
 
-def _missed_text(study: Study, curve: Curve, found: Shortfall) -> str:
+def _missed_text(study: Study, curve: Curve, found: WorstError) -> str:
     """Return what a method misses by the most, and why, in a sentence or two."""
     if not np.isfinite(found.times):
         return f"{curve.method.name} has no number for {found.forecast}."

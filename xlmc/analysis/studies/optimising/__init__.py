@@ -1,6 +1,6 @@
 """Optimisation: which decisions are best, and how sure that is."""
 
-from xlmc.analysis.studies.optimising.optimise import Held, OptimiseArguments, Optimised, optimise
+from xlmc.analysis.studies.optimising.optimise import OptimiseArguments, Optimised, RequirementResult, optimise
 from xlmc.analysis.studies.optimising.selection import Rival
 
-__all__ = ["Held", "OptimiseArguments", "Optimised", "Rival", "optimise"]
+__all__ = ["OptimiseArguments", "Optimised", "RequirementResult", "Rival", "optimise"]

@@ -38,7 +38,7 @@ from xlmc.montecarlo.simulation.simulation import ERROR_SHARE, RunResult
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import with_error
 
-__all__ = ["ALLOW_LOST", "RUNS", "Excluded", "Held", "OptimiseArguments", "Optimised", "optimise"]
+__all__ = ["ALLOW_LOST", "RUNS", "Excluded", "OptimiseArguments", "Optimised", "RequirementResult", "optimise"]
 
 ALLOW_LOST: Final = 100.0 * ERROR_SHARE
 RUNS: Final = 60.0
@@ -70,11 +70,11 @@ class OptimiseArguments(TypedDict, total=False):
 
 
 @dataclass(frozen=True, slots=True)
-class Held:
-    """What is required, and how it stands with the best decisions.
+class RequirementResult:
+    """A requirement, and how far the best decisions meet it.
 
     Attributes:
-        found: what is on its left side, from the run.
+        found: the value of its left side, from the run.
         chance: the probability that it holds, whatever else another seed would show.
     """
 
@@ -112,7 +112,7 @@ class Optimised(Shown):
         decisions: that were chosen.
         best: their values.
         found: the goal with them.
-        held: the requirements with them.
+        requirements: what is required, with them.
         as_it_is: the goal with the workbook's own decisions; None where the cells hold no numbers.
         indifference: a difference of the goal that does not matter.
         confidence: the probability that no other candidate that was tried, and meets the requirements as surely, is
@@ -139,7 +139,7 @@ class Optimised(Shown):
     decisions: tuple[Decision, ...]
     best: Values
     found: Estimate
-    held: tuple[Held, ...]
+    requirements: tuple[RequirementResult, ...]
     as_it_is: Estimate | None
     indifference: float
     confidence: float
@@ -171,7 +171,7 @@ class Optimised(Shown):
     @property
     def holds(self) -> bool:
         """Whether every requirement is met, more likely than not."""
-        return all(each.chance > 0.5 for each in self.held)
+        return all(each.chance > 0.5 for each in self.requirements)
 
     @property
     def values(self) -> dict[str, float | str | bool]:
@@ -282,7 +282,7 @@ def optimise(
         decisions=chosen,
         best=best,
         found=_estimate(found, run.accepted),
-        held=tuple(_held(each, columns, best, run.accepted) for each in requirements),
+        requirements=tuple(_result(each, columns, best, run.accepted) for each in requirements),
         as_it_is=as_it_is,
         indifference=difference,
         confidence=confidence,
@@ -369,7 +369,7 @@ def _estimate(found: Measured, n: int) -> Estimate:
     return with_error(found.value, found.error, n - 1.0, 0.95, n)
 
 
-def _held(requirement: Requirement, columns: Floats, best: Values, n: int) -> Held:
+def _result(requirement: Requirement, columns: Floats, best: Values, n: int) -> RequirementResult:
     slack = requirement.measured(columns, best)
     if math.isnan(slack.value):
         chance = 0.0
@@ -377,7 +377,7 @@ def _held(requirement: Requirement, columns: Floats, best: Values, n: int) -> He
         chance = NormalDist().cdf(slack.value / slack.error)
     else:
         chance = float(slack.value >= 0.0)
-    return Held(requirement, _estimate(requirement.left.of(columns, best), n), chance)
+    return RequirementResult(requirement, _estimate(requirement.left.of(columns, best), n), chance)
 
 
 class _Odd(TypedDict):

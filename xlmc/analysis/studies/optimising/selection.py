@@ -59,8 +59,8 @@ class Rival:
     meets: bool
 
     @property
-    def told_apart(self) -> bool:
-        """Whether it is worse, or better, by three errors or more."""
+    def significant(self) -> bool:
+        """Whether it is worse, or better, by three standard errors or more."""
         return abs(self.ahead) >= 3.0 * self.error and self.ahead != 0.0
 
 

@@ -3,9 +3,9 @@ from __future__ import annotations
 import pytest
 
 from xlmc.analysis.studies.sensitivity import sensitivities
+from xlmc.outputs.document.content.sensitivity import BARS
 from xlmc.outputs.document.element import EMPTY
 from xlmc.outputs.page.sensitivity_sections import dependence, limits
-from xlmc.outputs.sheets.sensitivity_sheet import BARS
 
 
 @pytest.fixture(scope="module")

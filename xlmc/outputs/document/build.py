@@ -16,6 +16,7 @@ from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.case_fields import case_of
+from xlmc.outputs.document.material import Material
 from xlmc.outputs.document.parts import Block, Document, Figure, Heading, Table
 from xlmc.outputs.document.sections import SECTIONS
 
@@ -83,8 +84,6 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
         DefinitionError: the table `xlmc_case` is not what it must be.
         SimulationError: there is no such forecast, section or paper.
     """
-    from xlmc.outputs.document.report_sections import Material
-
     check_wanted(wanted)
     workbook = simulation.model.workbook
     case = case_of(workbook, wanted.case)
@@ -139,8 +138,6 @@ def further_sections(simulation: RunResult, output: str) -> dict[str, tuple[str,
     rows = {name: section for name, section in SECTIONS.items() if output not in section.elsewhere}
     if not rows:
         return {}
-    from xlmc.outputs.document.report_sections import Material
-
     material = Material(simulation, make_record(simulation, None), _forecasts(Wanted(), simulation.model))
     words = vocabulary_of(simulation.model.workbook)
     found = {name: (section.title(words), list(section.make(material))) for name, section in rows.items()}

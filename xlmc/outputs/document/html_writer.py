@@ -27,12 +27,12 @@ from xlmc.outputs.document.parts import (
 )
 from xlmc.outputs.summary import estimate_text, share_text
 
-__all__ = ["blocks_html", "estimate_html", "number", "picture_html", "share_html", "shown_html"]
+__all__ = ["blocks_html", "cell_html", "estimate_html", "number", "picture_html", "share_html", "shown_html"]
 
 _TEXT_WIDTH = 160.0
 """Millimetres up to which a picture is as wide as the text of a page."""
 _LOOKS = {"text": None, "small": "remark"}
-_CLASSES = {"answer": "number wraps", "range": "number wraps range"}
+_CLASSES = {"answer": "number wraps", "range": "number wraps range", "moved": "number moved"}
 """Of numbers that may have their error in a line of its own, where a table has no room beside them."""
 
 
@@ -117,6 +117,11 @@ def _cells(cell: Content, index: int, at_right: frozenset[int], wide: Collection
             yield _cell(end, index + 1, at_right)
 
 
+def cell_html(cell: Content) -> Html:
+    """Return one cell of a table that is laid out elsewhere."""
+    return _cell(cell, 1, frozenset())
+
+
 def _cell(cell: Content, index: int, at_right: frozenset[int]) -> Html:
     if isinstance(cell, Drawing | Chart):
         return element("td", picture_html(cell, "shape"))
@@ -141,7 +146,7 @@ def _measured_html(cell: Measured) -> Html:
     if not error or cell.found.error is None:
         return number(cell.found.value, cell.text)
     beside = number(cell.found.error, error)
-    if cell.look in _CLASSES:
+    if cell.look in ("answer", "range"):
         return element("span", shown) + Html(" ") + element("span", f"{sign.strip()} ", beside)
     return shown + Html(sign) + beside
 

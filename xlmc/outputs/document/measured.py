@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics import Estimate, format_estimate
 from xlmc.outputs.document import cells
-from xlmc.outputs.document.cells import BLANK, Shown
+from xlmc.outputs.document.cells import AT_LEAST, BLANK, NOISE, Shown
 from xlmc.outputs.summary import share_text
 
 __all__ = ["HEADS", "Measured"]
@@ -38,6 +38,8 @@ class Measured:
         like: a number beside it, whose digits it takes if it has no error of its own.
         written: its text, where that is another than usual.
         nothing: what stands where there is no number.
+        noise: it is no more than chance alone would show: the word stands in its place.
+        at_least: it is a lower bound.
     """
 
     found: Estimate | None
@@ -48,11 +50,15 @@ class Measured:
     like: Estimate | None = None
     written: str = ""
     nothing: str = ""
+    noise: bool = False
+    at_least: bool = False
 
     @property
     def text(self) -> str:
         """Write the number and its error: `11.799 ± 0.013`, `5.44 ± 0.32 %`, `+0.59 ± 0.03`."""
         found = self.found
+        if self.noise and found is not None:
+            return "noise"
         if found is None or math.isnan(found.value) or self.written:
             return self.written or self.nothing
         match self.what:
@@ -63,11 +69,21 @@ class Measured:
             case what:
                 text = self.form.spread(found) if what in _SPANS else self.form.estimate(found)
         is_above = self.what in _SIGNED and found.value > 0.0 and re.search("[1-9]", text.partition("±")[0])
-        return f"+{text}" if is_above else text or self.nothing
+        least = "at least " if self.at_least and text else ""
+        return f"+{text}" if is_above else f"{least}{text}" or self.nothing
 
     @property
     def shown(self) -> Sequence[Shown]:
         """Return its cells on a sheet: the number and its error, and the ends of its interval where they are shown."""
+        value, *others = self._cells
+        if self.noise and self.found is not None:
+            value = replace(value, format=NOISE)
+        elif self.at_least:
+            value = replace(value, format=AT_LEAST + value.format)
+        return value, *others
+
+    @property
+    def _cells(self) -> Sequence[Shown]:
         found = self.found
         count = 4 if self.interval else 2
         if found is None:
@@ -79,4 +95,5 @@ class Measured:
             return [*cells.share(found, self.look), *ends]
         spread = self.what in _SPANS
         ends = cells.interval(found, form=self.form, spread=spread) if self.interval else []
-        return [*cells.estimate(found, self.look, like=self.like, form=self.form, spread=spread), *ends]
+        error = "second error" if self.look == "second number" else "error"
+        return [*cells.estimate(found, self.look, error, like=self.like, form=self.form, spread=spread), *ends]

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Final
+from importlib import import_module
+from typing import TYPE_CHECKING, Final, cast
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.vocabulary import Vocabulary
+    from xlmc.outputs.document.material import Material
     from xlmc.outputs.document.parts import Block
-    from xlmc.outputs.document.report_sections import Material
 
 __all__ = ["OUTPUTS", "SECTIONS", "Section"]
 
@@ -39,11 +40,12 @@ class Section:
         return filled[:1].upper() + filled[1:]
 
 
-def _in_report(name: str) -> Callable[[Material], Iterator[Block]]:
-    def make(material: Material) -> Iterator[Block]:
-        from xlmc.outputs.document.report_sections import MAKERS
+def _from(module: str) -> Callable[[Material], Iterator[Block]]:
+    """Return the function `section` of a module of `document.content`, which is loaded when it is called."""
 
-        return MAKERS[name](material)
+    def make(material: Material) -> Iterator[Block]:
+        found = import_module(f"xlmc.outputs.document.content.{module}")
+        return cast("Iterator[Block]", found.section(material))
 
     return make
 
@@ -54,17 +56,17 @@ _LONG: Final = dict.fromkeys(("terminal", "notebook"), "too long")
 _REPORT_ONLY: Final = dict.fromkeys(OUTPUTS, "it explains the report")
 
 SECTIONS: Final[dict[str, Section]] = {
-    "answer": Section("The question and the answer", _in_report("answer"), _STATED),
-    "scene": Section("The {drawing}", _in_report("scene"), _IN_WORKBOOK),
-    "scene-trials": Section("Trials over the chart", _in_report("scene-trials"), {"terminal": "charts are for files"}),
+    "answer": Section("The question and the answer", _from("answers"), _STATED),
+    "scene": Section("The {drawing}", _from("scene"), _IN_WORKBOOK),
+    "scene-trials": Section("Trials over the chart", _from("scene_trials"), {"terminal": "charts are for files"}),
     "forecasts": Section(
         "The forecasts",
-        _in_report("forecasts"),
+        _from("forecasts"),
         {"page": "Forecasts", "sheets": "Charts", "terminal": "charts are for files", "notebook": "Answers"},
     ),
     "filters": Section(
         "Filters: what a trial must meet",
-        _in_report("filters"),
+        _from("filters"),
         {
             "page": "Trials and filters",
             "sheets": "Results",
@@ -74,58 +76,64 @@ SECTIONS: Final[dict[str, Section]] = {
     ),
     "evidence": Section(
         "Evidence, and whether it agrees",
-        _in_report("evidence"),
+        _from("evidence"),
         {"page": "Evidence", "sheets": "Evidence results", "terminal": "Evidence", "notebook": "too long"},
     ),
     "scenarios": Section(
         "Scenarios: the answers if something is changed",
-        _in_report("scenarios"),
+        _from("scenarios"),
         {"page": "Scenarios", "sheets": "Scenarios", "terminal": "Scenarios", "notebook": "too long"},
     ),
     "assumptions": Section(
         "Assumptions",
-        _in_report("assumptions"),
+        _from("assumptions"),
         {"page": "Assumptions", "sheets": "Assumptions", "terminal": "xlmc check", "notebook": "shown of the model"},
     ),
     "sensitivity": Section(
         "What the answers depend on",
-        _in_report("sensitivity"),
+        _from("sensitivity"),
         {"page": "Sensitivity", "sheets": "Sensitivity", "terminal": "too long", "notebook": "xlmc.sensitivities"},
     ),
     "certainty": Section(
         "Certainty of ranges",
-        _in_report("certainty"),
+        _from("certainty"),
         {"page": "Certainty of ranges", "sheets": "Certainty", **_LONG},
         asked_for=True,
     ),
     "pairs": Section(
         "Forecasts two at a time",
-        _in_report("pairs"),
+        _from("pairs"),
         {"page": "Forecasts two at a time", "sheets": "Pairs", **_LONG},
         asked_for=True,
     ),
     "statistics": Section(
         "Statistics of the accepted trials",
-        _in_report("statistics"),
+        _from("statistics"),
         {"page": "Statistics", "sheets": "Statistics", **_LONG},
+        asked_for=True,
+    ),
+    "limits": Section(
+        "Filter limits: how the answers move as each limit moves",
+        _from("limits"),
+        {"page": "Filter limits", "sheets": "Filter limits", **_LONG},
         asked_for=True,
     ),
     "checks": Section(
         "{checks}",
-        _in_report("checks"),
+        _from("checks"),
         {"page": "Checks", "sheets": "Results", "terminal": "Checks", "notebook": "warnings name those that fail"},
     ),
-    "equations": Section("Equations", _in_report("equations"), _IN_WORKBOOK),
+    "equations": Section("Equations", _from("equations"), _IN_WORKBOOK),
     "notices": Section(
         "Notices",
-        _in_report("notices"),
+        _from("notices"),
         {"page": "Notices", "sheets": "Results", "terminal": "printed first", "notebook": "Notice"},
     ),
     "repeat": Section(
         "How to repeat this",
-        _in_report("repeat"),
+        _from("repeat"),
         {"page": "Record", "sheets": "Record", "terminal": "files record it", "notebook": "files record it"},
     ),
-    "glossary": Section("Words", _in_report("glossary"), _REPORT_ONLY),
+    "glossary": Section("Words", _from("glossary"), _REPORT_ONLY),
 }
 """Name -> section; one without blocks is left out, with its heading."""

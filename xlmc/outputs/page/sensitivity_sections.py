@@ -1,27 +1,28 @@
-"""The sections Sensitivity and Filter limits of the page: influences, tornado, how the answers move with a limit."""
+"""The sections Sensitivity and Filter limits of the page: charts side by side, and the numbers below them folded."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from collections.abc import Iterable, Mapping
 from typing import TYPE_CHECKING
 
-from xlmc.analysis.results.statements.in_words import given_text
-from xlmc.montecarlo.definitions.forms import PLAIN, Form
-from xlmc.outputs.document.charts import contribution_chart, influence_chart, limit_chart, tornado_chart
-from xlmc.outputs.document.element import EMPTY, Html, element
-from xlmc.outputs.document.html_writer import picture_html
-from xlmc.outputs.document.parts import Chart
-from xlmc.outputs.page.flow import Flow
-from xlmc.outputs.sheets.limits_sheet import limit_sentences, moved_caption, write_acceptance, write_answers
-from xlmc.outputs.sheets.sensitivity_sheet import (
-    BARS,
-    influence_captions,
-    move_captions,
-    sensitivity_sentences,
-    write_influences,
-    write_moves,
+from xlmc.outputs.document.content.limits import (
+    NOT_MOVED,
+    acceptance_table,
+    answers_table,
+    limit_figures,
+    limit_heading,
+    limit_sentences,
+    slopes_table,
 )
+from xlmc.outputs.document.content.sensitivity import (
+    influence_table,
+    move_table,
+    sensitivity_figures,
+    sensitivity_sentences,
+)
+from xlmc.outputs.document.element import EMPTY, Html, element
+from xlmc.outputs.document.html_writer import blocks_html
+from xlmc.outputs.document.parts import Block
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.sensitivity import FilterLimit, ForecastSensitivity, Sensitivities
@@ -44,32 +45,12 @@ def dependence(found: Sensitivities, source: Workbook) -> Html:
 
 
 def _forecast(found: ForecastSensitivity, whole: Sensitivities) -> Html:
+    heading = element("h3", found.forecast)
     if not found.influences and not found.bars:
-        return element("article", element("h3", found.forecast), element("p", "No assumption moves it."))
-    charts = element("div", *_charts(found, whole), class_="drawings")
-    return element("article", element("h3", found.forecast), charts, *_tables(found, whole), class_="sensitivity")
-
-
-def _charts(found: ForecastSensitivity, whole: Sensitivities) -> Iterator[Html]:
-    if found.influences:
-        explained, _, _, contribution = influence_captions(found, whole.sobol_trials)
-        yield _figure(influence_chart(found, BARS, "Variance explained"), explained)
-        yield _figure(contribution_chart(found, BARS, "Contribution to variance (approximate)"), contribution)
-    if found.bars and found.base is not None:
-        yield _figure(tornado_chart(found, BARS, "Tornado"), move_captions(found)[0])
-
-
-def _figure(chart: Chart, caption: str) -> Html:
-    return element("figure", picture_html(chart), element("figcaption", caption) if caption else EMPTY)
-
-
-def _tables(found: ForecastSensitivity, whole: Sensitivities) -> Iterator[Html]:
-    flow = Flow()
-    if found.influences:
-        write_influences(flow, found, whole.sobol_trials > 0)
-    if found.bars:
-        write_moves(flow, found)
-    yield element("details", element("summary", "The numbers"), flow.html)
+        return element("article", heading, element("p", "No assumption moves it."))
+    tables = [influence_table(found, whole.sobol_trials > 0)] if found.influences else []
+    tables += [move_table(found)] if found.bars else []
+    return _article(heading, sensitivity_figures(found, whole.sobol_trials), "The numbers", tables)
 
 
 def limits(found: Sensitivities) -> Html:
@@ -87,25 +68,18 @@ def limits(found: Sensitivities) -> Html:
 
 
 def _limit(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> Html:
-    heading = element("h3", f"{limit.filter}: {limit.relation} {given_text(limit.limit)} ({limit.cell})")
+    heading = element("h3", limit_heading(limit))
     if not limit.points:
-        said = "The accepted trials do not say by how much it could be moved."
-        return element("article", heading, element("p", said))
-    flow, answers = Flow(), Flow()
-    write_acceptance(flow, limit)
-    write_answers(answers, limit, forecasts)
-    numbers = element("details", element("summary", "The answers at each limit"), answers.html)
-    drawings = element("div", *_answer_charts(limit, forecasts), element("div", flow.html), class_="drawings")
+        return element("article", heading, element("p", NOT_MOVED))
+    beside = element("div", blocks_html([acceptance_table(limit), slopes_table(limit)]))
+    answers = [answers_table(limit, forecasts)]
+    return _article(heading, limit_figures(limit, forecasts), "The answers at each limit", answers, beside)
+
+
+def _article(
+    heading: Html, drawn: Iterable[Block], summary: str, tables: Iterable[Block], beside: Html = EMPTY
+) -> Html:
+    """Return charts and what stands beside them, and tables that open when they are asked for."""
+    drawings = element("div", blocks_html(drawn), beside, class_="drawings")
+    numbers = element("details", element("summary", summary), blocks_html(tables))
     return element("article", heading, drawings, numbers, class_="sensitivity")
-
-
-def _answer_charts(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> Iterator[Html]:
-    """Yield a chart for the forecasts of each unit and kind: changes in different units have no common axis."""
-    alike: dict[tuple[str, Form], list[int]] = {}
-    for index, slope in enumerate(limit.slopes):
-        each = forecasts[slope.forecast]
-        form = replace(each.form, report_to=None)
-        alike.setdefault((each.change_units, form if any(form.affixes) else PLAIN), []).append(index)
-    for number, ((unit, form), indexes) in enumerate(alike.items()):
-        shown = forecasts[limit.slopes[indexes[0]].forecast].change_form if form != PLAIN else PLAIN
-        yield _figure(limit_chart(limit, indexes, unit, shown), "" if number else moved_caption(limit))

@@ -11,11 +11,17 @@ from xlmc.analysis.results.statements.in_words import distribution_text, status
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
-from xlmc.montecarlo.number_text import count_text, styled_text, whole_text
-from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.number_text import styled_text, whole_text
 from xlmc.outputs.document.cells import NONE
 from xlmc.outputs.document.charts import shape_chart
 from xlmc.outputs.document.content.answers import answer_blocks
+from xlmc.outputs.document.content.assumptions import (
+    assumption_change,
+    assumption_remarks,
+    assumption_rows,
+    correlation_blocks,
+    meaning_of_marks,
+)
 from xlmc.outputs.document.content.certainty import certainty_blocks
 from xlmc.outputs.document.content.checks import check_blocks
 from xlmc.outputs.document.content.evidence import evidence_blocks
@@ -25,11 +31,9 @@ from xlmc.outputs.document.content.pairs import pair_blocks
 from xlmc.outputs.document.content.scenarios import scenario_blocks
 from xlmc.outputs.document.content.statistics import statistics_sentence, statistics_tables
 from xlmc.outputs.document.element import EMPTY, Html, element
-from xlmc.outputs.document.html_writer import blocks_html, estimate_html, number, picture_html
+from xlmc.outputs.document.html_writer import blocks_html, cell_html, picture_html
 from xlmc.outputs.document.parts import Block, Heading, Paragraph
-from xlmc.outputs.filter_effect import PERCENTS, FilterEffect, Marginal, filter_effect_of
-from xlmc.outputs.page.flow import Flow
-from xlmc.outputs.sheets.assumptions_sheet import MOVED, NARROWED, STRATIFIED, meaning_text, write_correlations
+from xlmc.outputs.filter_effect import PERCENTS, filter_effect_of
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Assumption
@@ -122,8 +126,6 @@ def filters(simulation: RunResult) -> Html:
 
 def assumptions(simulation: RunResult) -> Html:
     """Every assumption before and after filtering, as the sheet Assumptions has it."""
-    correlations = Flow()
-    write_correlations(correlations, simulation)
     names = enumerate((*_HEADS, *_CHANGES))
     heads = (element("th", head, scope="col", class_="number" if index else None) for index, head in names)
     bodies = (_assumption(simulation, assumption) for assumption in simulation.model.assumptions)
@@ -131,29 +133,16 @@ def assumptions(simulation: RunResult) -> Html:
     return element(
         "section",
         element("h2", "Assumptions, before filtering and accepted" if simulation.filters_act else "Assumptions"),
-        *([element("p", meaning_text())] if simulation.filters_act else []),
-        *(element("p", said, class_="remark") for said in _remarks(simulation)),
+        *([element("p", meaning_of_marks())] if simulation.filters_act else []),
+        *(element("p", said, class_="remark") for said in assumption_remarks(simulation)),
         element("div", table, class_="wide-table paired"),
-        correlations.html,
+        blocks_html(correlation_blocks(simulation)),
         id="assumptions",
     )
 
 
-def _remarks(simulation: RunResult) -> Iterator[str]:
-    early = max((values.size for values in simulation.prior.values()), default=0)
-    of = "Before filtering: t" if simulation.filters_act else "T"
-    yield f"{of}he first {count_text(early)} trials. ± is the standard error."
-    if simulation.plan.size:
-        yield STRATIFIED
-    if simulation.kept_inputs < simulation.accepted:
-        yield (
-            f"Accepted: the first {count_text(simulation.kept_inputs)} of "
-            f"{count_text(simulation.accepted)} accepted trials."
-        )
-
-
 def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
-    """Return an assumption's name above two rows, in a table body of their own so that they stay together."""
+    """Return an assumption's name above its rows, in a table body of their own so that they stay together."""
     found = filter_effect_of(simulation, assumption.name)
     form = simulation.model.input_forms.get(assumption.name, PLAIN)
     shape = EMPTY if found is None else _shape(simulation, assumption.name)
@@ -161,14 +150,11 @@ def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
     if found is None:
         why = element("td", status(simulation.model, assumption.name, assumption.frozen), colspan=str(_COLUMNS))
         return element("tbody", named, element("tr", why))
-    if not simulation.filters_act:
-        return element(
-            "tbody", named, element("tr", *_marginal(found.prior, "all", form), element("td"), element("td"))
-        )
-    before = element("tr", *_marginal(found.prior, "before", form), element("td"), element("td"))
-    return element(
-        "tbody", named, before, element("tr", *_marginal(found.accepted, "accepted", form), *_changes(found))
-    )
+    rows = assumption_rows(simulation, assumption.name)
+    changes = assumption_change(found) if len(rows) > 1 else ("", "")
+    ends = [("", "")] * (len(rows) - 1) + [changes]
+    lines = ((*row, *end) for row, end in zip(rows, ends, strict=True))
+    return element("tbody", named, *(element("tr", *map(cell_html, line)) for line in lines))
 
 
 def _shape(simulation: RunResult, name: str) -> Html:
@@ -182,24 +168,6 @@ def _name_line(assumption: Assumption, form: Form) -> Iterator[Html | str]:
     yield element("b", assumption.name, f", {assumption.units}" if assumption.units else "")
     yield " "
     yield element("small", f"{assumption.cell}, base case {base}. {distribution_text(assumption)}. {assumption.source}")
-
-
-def _marginal(found: Marginal, when: str, form: Form) -> Iterator[Html]:
-    yield element("td", when)
-    yield element("td", number(found.trials, count_text(found.trials)), class_="number")
-    yield element("td", estimate_html(found.mean, form.estimate), class_="number")
-    yield element("td", estimate_html(found.standard_deviation, form.spread), class_="number")
-    for estimate in found.percentiles.values():
-        yield element("td", estimate_html(estimate, form.estimate), class_="number")
-
-
-def _changes(found: FilterEffect) -> Iterator[Html]:
-    yield _change(found.shift, abs(found.shift.value) >= MOVED)
-    yield _change(found.narrowing, found.narrowing.value <= NARROWED)
-
-
-def _change(found: Estimate, marked: bool) -> Html:
-    return element("td", estimate_html(found), class_="number moved" if marked else "number")
 
 
 def notices(simulation: RunResult) -> Html:

@@ -1,28 +1,34 @@
 """The sheet Assumptions: what each one is and why, and beside it how the filters changed it.
 
 Each has three lines: name, units, base case and the draws before filtering; distribution, cell and the accepted draws;
-its source, and how mean and standard deviation changed. At their end a small chart shows the shapes of both.
+its source, and how mean and standard deviation changed. At their end a small chart shows the shapes of both. So the
+sheet lays the rows of `content.assumptions` out itself.
 """
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from xlmc.analysis.results.record.definition_tables import correlations_met
 from xlmc.analysis.results.statements.in_words import distribution_text, status
-from xlmc.montecarlo.definitions.forms import PLAIN, Form
-from xlmc.montecarlo.number_text import count_text, number_text
-from xlmc.montecarlo.statistics import Estimate
+from xlmc.montecarlo.definitions.forms import PLAIN
+from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.colours import DARK, LIGHT
-from xlmc.outputs.filter_effect import DRAWN, FilterEffect, Marginal, filter_effect_of, shapes_of
+from xlmc.outputs.document.content.assumptions import (
+    assumption_change,
+    assumption_remarks,
+    assumption_rows,
+    correlation_blocks,
+    meaning_of_marks,
+)
+from xlmc.outputs.filter_effect import DRAWN, filter_effect_of, shapes_of
 from xlmc.outputs.sheets.curves_sheet import SHARE
 from xlmc.outputs.sheets.styles import straight
+from xlmc.outputs.sheets.xlsx_writer import row_cells, write_blocks
 
 if TYPE_CHECKING:
     from xlsxwriter.chart import Chart
@@ -33,16 +39,7 @@ if TYPE_CHECKING:
     from xlmc.outputs.sheets.curves_sheet import Curves, TableAt
     from xlmc.outputs.sheets.page import Page
 
-__all__ = [
-    "HEADER",
-    "MOVED",
-    "NARROWED",
-    "STRATIFIED",
-    "WIDTHS",
-    "meaning_text",
-    "write_assumptions",
-    "write_correlations",
-]
+__all__ = ["HEADER", "WIDTHS", "write_assumptions"]
 
 HEADER = 3
 """The row of the headings, counted from 0."""
@@ -66,34 +63,10 @@ _HEADS = (
     *("Mean", "±", "Standard deviation", "±", "5 %", "±", "50 %", "±", "95 %", "±", "Before (pale), accepted (line)"),
 )
 
-MOVED, NARROWED = 0.5, 0.8
-
-
 _CHANGE = (
     "The third line of each assumption has its change: how far the mean moved, in standard deviations of the draws "
     "before filtering (SD), and what part of that standard deviation is left (×)."
 )
-
-STRATIFIED = (
-    "Before filtering, ± is that of independent trials; the draws of this run are more even, so it is rather too "
-    "large. Of the accepted draws, ± comes from the differences between the independent parts of the run (replicates)."
-)
-
-_CORRELATIONS = (
-    "“Asked for” and “drawn with” are before filtering. They differ if the correlations asked for are not all possible "
-    "at once, or if an assumption takes so few different values that only a weaker one is possible. Filters change "
-    "correlations as they change assumptions; those of the accepted trials are beside them."
-)
-
-
-def meaning_text() -> str:
-    """Say what filters do to assumptions, and what is marked."""
-    return (
-        "Filters keep only the combinations in which they hold. So an assumption that they bear on is distributed "
-        "differently among the accepted trials, although its range is the same. Marked: a mean that moved by "
-        f"{number_text(MOVED)} standard deviations or more; a standard deviation that shrank to "
-        f"{number_text(NARROWED)} of what it was or less."
-    )
 
 
 def write_assumptions(page: Page, book: Workbook, simulation: RunResult, curves: Curves) -> None:
@@ -113,22 +86,11 @@ def write_assumptions(page: Page, book: Workbook, simulation: RunResult, curves:
         _write_assumption(page, simulation, assumption)
     page.sheet.freeze_panes(HEADER + 1, 1)
     _draw_shapes(page, book, simulation, curves)
-    write_correlations(page, simulation)
+    write_blocks(page, correlation_blocks(simulation), last=_READABLE)
     page.heading("What this shows")
-    if simulation.filters_act:
-        page.wide(meaning_text(), "paragraph", _READABLE)
-        page.wide(_CHANGE, "paragraph", _READABLE)
-    early = max((values.size for values in simulation.prior.values()), default=0)
-    of = "Before filtering: t" if simulation.filters_act else "T"
-    page.wide(f"{of}he first {count_text(early)} trials. ± is the standard error.", "paragraph", _READABLE)
-    if simulation.plan.size:
-        page.wide(STRATIFIED, "paragraph", _READABLE)
-    if simulation.kept_inputs < simulation.accepted:
-        kept = (
-            f"Accepted: the first {count_text(simulation.kept_inputs)} of "
-            f"{count_text(simulation.accepted)} accepted trials."
-        )
-        page.wide(kept, "paragraph", _READABLE)
+    sentences = [meaning_of_marks(), _CHANGE] if simulation.filters_act else []
+    for sentence in (*sentences, *assumption_remarks(simulation)):
+        page.wide(sentence, "paragraph", _READABLE)
     page.set_up_printing(name, repeat=HEADER)
 
 
@@ -194,69 +156,23 @@ def _write_assumption(page: Page, simulation: RunResult, assumption: Assumption)
 
 def _statistics(simulation: RunResult, assumption: Assumption) -> tuple[list[Shown], list[Shown], list[Shown]]:
     """Return the cells of the draws before filtering, of the accepted ones and of the change; or why there are none."""
-    found, form = (
-        filter_effect_of(simulation, assumption.name),
-        simulation.model.input_forms.get(assumption.name, PLAIN),
-    )
+    rows, found = assumption_rows(simulation, assumption.name), filter_effect_of(simulation, assumption.name)
+    second, last = _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)
     if found is None:
         why = Shown(status(simulation.model, assumption.name, assumption.frozen))
-        return [why, *_blank(_STATISTICS + 1)], _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)
-    if not simulation.filters_act:
-        return [Shown("all"), *_before(found, form)[1:]], _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)
-    return _before(found, form), _accepted(found, form), _change(found)
-
-
-def _before(found: FilterEffect, form: Form) -> list[Shown]:
-    return [Shown("before"), cells.count(found.prior.trials), *_marginal(found.prior, form)]
-
-
-def _accepted(found: FilterEffect, form: Form) -> list[Shown]:
-    return [
-        Shown("accepted", look="second"),
-        Shown(found.accepted.trials, cells.count(0).format, "second number"),
-        *_marginal(found.accepted, form, "second number", "second error"),
-    ]
-
-
-def _marginal(found: Marginal, form: Form, look: str = "number", error_look: str = "error") -> list[Shown]:
-    spread = cells.estimate(found.standard_deviation, look, error_look, form=form, spread=True)
-    mean, *others = (
-        cells.estimate(each, look, error_look, form=form) for each in (found.mean, *found.percentiles.values())
-    )
-    return [*mean, *spread, *(shown for each in others for shown in each)]
-
-
-def _change(found: FilterEffect) -> list[Shown]:
-    shift = cells.estimate(found.shift, "moved" if abs(found.shift.value) >= MOVED else "number")
-    ratio = cells.estimate(found.narrowing, "moved" if found.narrowing.value <= NARROWED else "number")
+        return [why, *_blank(_STATISTICS + 1)], second, last
+    first, *others = (row_cells(row) for row in rows)
+    if not others:
+        return first, second, last
+    (shift, shift_error), (ratio, ratio_error) = (each.shown for each in assumption_change(found))
     changes = [
-        replace(shift[0], format=f'{shift[0].format}" SD"'),
-        shift[1],
-        replace(ratio[0], format=f'"× "{ratio[0].format}'),
-        ratio[1],
+        replace(shift, format=f'{shift.format}" SD"'),
+        shift_error,
+        replace(ratio, format=f'"× "{ratio.format}'),
+        ratio_error,
     ]
-    return [Shown("change"), cells.BLANK, *changes, *_blank(_STATISTICS - len(changes))]
+    return first, others[0], [Shown("change"), cells.BLANK, *changes, *_blank(_STATISTICS - len(changes))]
 
 
 def _blank(columns: int, look: str = "number") -> list[Shown]:
     return [Shown(None, look=look)] * columns
-
-
-def write_correlations(page: Page, simulation: RunResult) -> None:
-    """Write the rank correlations, where there are any."""
-    met = correlations_met(simulation)
-    if not met:
-        return
-    page.heading("Rank correlations")
-    starts, last = (0, 1, 5, 7, 9, 10), 10
-    headers = ("First", "Second", "Asked for", "Drawn with", "Accepted", "±")
-    page.line([Shown(header, look="header left") for header in headers], starts, last)
-    for pair in met:
-        found = pair.accepted or Estimate(math.nan)
-        line = [Shown(pair.first), Shown(pair.second), cells.exact(pair.asked)]
-        line += [
-            Shown(cells.NONE) if pair.used is None else cells.exact(round(pair.used, 6)),
-            *cells.estimate(found),
-        ]
-        page.line(line, starts, last)
-    page.wide(_CORRELATIONS, "paragraph", _READABLE)

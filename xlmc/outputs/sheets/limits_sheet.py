@@ -10,12 +10,19 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import given_text
 from xlmc.montecarlo.number_text import count_text
-from xlmc.outputs.document import cells
-from xlmc.outputs.document.cells import Shown
+from xlmc.outputs.document.content.limits import (
+    NOT_MOVED,
+    acceptance_table,
+    answers_table,
+    limit_heading,
+    limit_sentences,
+    moved_caption,
+    nothing_moves,
+    slopes_table,
+)
 from xlmc.outputs.sheets.sensitivity_charts import (
     CHART_ROWS,
     CHARTED,
-    RIGHT,
     WIDTHS,
     Captioned,
     TableAt,
@@ -23,6 +30,7 @@ from xlmc.outputs.sheets.sensitivity_charts import (
     place_rows,
 )
 from xlmc.outputs.sheets.styles import bounds
+from xlmc.outputs.sheets.xlsx_writer import write_blocks
 
 if TYPE_CHECKING:
     from xlsxwriter.workbook import Workbook
@@ -30,13 +38,11 @@ if TYPE_CHECKING:
     from xlmc.analysis.studies.sensitivity import (
         FilterLimit,
         ForecastSensitivity,
-        LimitAnswer,
-        LimitPoint,
         Sensitivities,
     )
     from xlmc.outputs.sheets.page import Page
 
-__all__ = ["WIDTHS", "limit_sentences", "moved_caption", "write_acceptance", "write_answers", "write_limits"]
+__all__ = ["WIDTHS", "write_limits"]
 
 _LAST: Final = len(WIDTHS) - 1
 _PRINTED: Final = (
@@ -73,115 +79,28 @@ def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) ->
     page.set_up_printing(name, printed=printed, columns=(0, CHARTED))
 
 
-def limit_sentences(found: Sensitivities) -> list[str]:
-    """Sentences that say what moving a limit means."""
-    said = [
-        "One limit is moved; all others stay. A tighter limit keeps some of the accepted trials. A looser one also "
-        "accepts trials that nothing else rejects; these come from the run's first trials, so their errors are larger. "
-        "Changes and slopes compare runs that share trials, and their errors allow for that. A limit is evidence: "
-        "this sheet shows how much its exact value matters, not which value is right."
-    ]
-    if found.varying_limits:
-        said.append(f"Not moved, because the limit varies with the assumptions: {', '.join(found.varying_limits)}.")
-    if found.omitted_limits:
-        said.append(
-            f"{count_text(found.omitted_limits)} further limits were left out: the last of very many, "
-            "or all of them where "
-            "accepted trials are rare, because trials near a limit are then not among those drawn before the search."
-        )
-    return said
-
-
 def _write_limit(
     page: Page, book: Workbook, limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]
 ) -> list[Captioned]:
     """Write a limit's tables, and the chart of the shares above them; that of the changes is returned, for the top."""
-    page.heading(f"{limit.filter}: {limit.relation} {given_text(limit.limit)} ({limit.cell})")
+    page.heading(limit_heading(limit))
     if not limit.points:
-        page.wide("The accepted trials do not say by how much it could be moved.", "paragraph", _LAST)
+        page.wide(NOT_MOVED, "paragraph", _LAST)
         return []
-    top = page.row
+    top, points = page.row, len(limit.points)
     page.row += CHART_ROWS + 1
-    acceptance = write_acceptance(page, limit)
+    header = page.row
+    acceptance = TableAt(page.name, header, header + 1, header + points)
+    write_blocks(page, [acceptance_table(limit), slopes_table(limit)])
     page.row += 1
-    tables = write_answers(page, limit, forecasts)
+    header = page.row
+    firsts = range(header + 1, header + 1 + points * len(limit.slopes), points)
+    tables = [TableAt(page.name, header, first, first + points - 1) for first in firsts]
+    write_blocks(page, [answers_table(limit, forecasts)])
     bottom, page.row = page.row, top
     place_rows(page, [_acceptance_chart(book, limit, acceptance)])
     page.row = bottom
     return [_moved_chart(book, limit, tables, forecasts)] if tables else []
-
-
-def write_acceptance(page: Page, limit: FilterLimit) -> TableAt:
-    """Write the shares accepted, and the slopes beside them; where the shares stand is returned."""
-    header = page.row
-    page.table(["Limit", "Value", "Trials", "Share", "±"], [_acceptance(point, limit) for point in limit.points])
-    bottom, page.row = page.row, header
-    starts, last = (RIGHT + 1, 12, 13), 13
-    headers = ("Slope: change of the mean of …, per unit of the limit", "Slope", "±")
-    page.line([Shown(header, look="header left") for header in headers], starts, last)
-    for slope in limit.slopes:
-        page.line([Shown(slope.forecast, look="name"), *cells.estimate(slope.mean)], starts, last)
-    page.row = max(bottom, page.row)
-    return TableAt(page.name, header, header + 1, header + len(limit.points))
-
-
-def _acceptance(point: LimitPoint, limit: FilterLimit) -> list[Shown]:
-    return [
-        Shown(_tighter_or_looser(point.limit, limit), look="name"),
-        cells.exact(point.limit),
-        cells.count(point.trials),
-        *cells.share(point.acceptance),
-    ]
-
-
-def _tighter_or_looser(value: float, limit: FilterLimit) -> str:
-    if value == limit.limit:
-        return "as it is"
-    looser = (value < limit.limit) == (limit.relation in ("at least", "above"))
-    return "looser" if looser else "tighter"
-
-
-def write_answers(page: Page, limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> list[TableAt]:
-    """Write every forecast at every value of the limit; where each forecast's rows stand is returned."""
-    header = page.row
-    headers = [
-        "Forecast",
-        "Limit",
-        "Mean",
-        "±",
-        "Change of mean",
-        "±",
-        "Range from",
-        "±",
-        "to",
-        "±",
-        "Change / range",
-        "±",
-    ]
-    page.table(headers, [])
-    tables = []
-    for index, slope in enumerate(limit.slopes):
-        first = page.row
-        now = next(point.answers[index] for point in limit.points if point.limit == limit.limit)
-        for point in limit.points:
-            page.line(_answer(forecasts[slope.forecast], point.limit, point.answers[index], now))
-        tables.append(TableAt(page.name, header, first, page.row - 1))
-    return tables
-
-
-def _answer(forecast: ForecastSensitivity, limit: float, answer: LimitAnswer, now: LimitAnswer) -> list[Shown]:
-    width = now.high.value - now.low.value
-    looks = ("second number", "second error") if answer is now else ("number", "error")
-    shown = [
-        each
-        for found in (answer.mean, answer.change, answer.low, answer.high)
-        for each in cells.estimate(found, *looks, like=now.mean, form=forecast.form, spread=found is answer.change)
-    ]
-    part = [
-        Shown(None if each is None or width <= 0.0 else each / width, "0.0%", look)
-        for each, look in zip((answer.change.value, answer.change.error), looks, strict=True)
-    ]
-    return [Shown(forecast.forecast, look="name"), Shown(limit, look=looks[0]), *shown, *part]
 
 
 def _moved_chart(
@@ -213,24 +132,9 @@ def _share_axis(limit: FilterLimit) -> dict[str, float]:
     return bounds(0.0, min(1.0, max(tops, default=0.0)))
 
 
-def moved_caption(limit: FilterLimit) -> str:
-    """Return the caption of the chart of the changes."""
-    return (
-        f"How far each forecast's mean moves from that with the limit as it is ({given_text(limit.limit)}); whiskers "
-        f"are standard errors of the change. Other filters and limits stay.{_nothing_moves(limit)}"
-    )
-
-
 def _brief(limit: FilterLimit) -> str:
     """Return the caption of the same chart where the sheet says once what all of them show."""
-    return f"{limit.filter}: as it is, {given_text(limit.limit)}.{_nothing_moves(limit)}"
-
-
-def _nothing_moves(limit: FilterLimit) -> str:
-    """Return the sentence on changes of 0 ± 0; empty if some change is not."""
-    if len({point.trials for point in limit.points}) > 1:
-        return ""
-    return " No trial that everything else keeps lies between these limits, so nothing moves; with more trials it may."
+    return f"{limit.filter}: as it is, {given_text(limit.limit)}.{nothing_moves(limit)}"
 
 
 def _share_caption(limit: FilterLimit) -> str:

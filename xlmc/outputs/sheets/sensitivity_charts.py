@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.colours import DARK, GRID, INK, LIGHT
+from xlmc.outputs.document.content.sensitivity import MOST_LINES
 from xlmc.outputs.sheets.page import ROW
 from xlmc.outputs.sheets.styles import AXIS, FONT, axis_format, no_reference, straight
 
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
 __all__ = [
     "CHARTED",
     "CHART_ROWS",
-    "MOST_LINES",
     "RIGHT",
     "WIDTHS",
     "Captioned",
@@ -56,9 +56,6 @@ Captioned: TypeAlias = tuple[Any, str]
 
 _WIDTH: Final = 550
 """Pixels of a chart: what the columns before `RIGHT` have."""
-
-MOST_LINES: Final = 6
-"""The most lines of a spider chart; more cannot be told apart."""
 
 _COLOURS: Final = ("#2F6DA8", "#C8553D", "#4F8A5B", "#8E5EA2", "#D99A2B", "#52606D", "#3AA6A6", "#A23B5B")
 

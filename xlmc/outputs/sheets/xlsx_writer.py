@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from xlmc.outputs.sheets.page import Page
 
-__all__ = ["Charting", "sheet_widths", "write_blocks"]
+__all__ = ["Charting", "row_cells", "sheet_widths", "write_blocks"]
 
 _WIDTHS: Final = (44.0, *[17.0] * 7)
 _LONG, _LONG_NUMBER = 60, 26
@@ -181,6 +181,11 @@ def _starts(table: Table, counts: Sequence[int]) -> tuple[list[int], int]:
         starts += range(column, column + count)
         column += max(count, span)
     return starts, column - 1
+
+
+def row_cells(row: Sequence[Content]) -> list[Shown]:
+    """Return a row of numbers and texts as the cells of the sheet that it takes."""
+    return [shown for index, cell in enumerate(row) for shown in _cells(cell, index, ())]
 
 
 def _cells(cell: Content, index: int, right: Collection[int]) -> Sequence[Shown]:

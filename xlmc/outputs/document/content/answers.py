@@ -29,8 +29,9 @@ from xlmc.outputs.summary import (
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.outputs.document.material import Material
 
-__all__ = ["answer_blocks", "answer_tables", "opening_sentences"]
+__all__ = ["answer_blocks", "answer_tables", "opening_sentences", "section"]
 
 
 def answer_blocks(simulation: RunResult, names: Collection[str]) -> Iterator[Block]:
@@ -187,3 +188,8 @@ def _base_sentences(simulation: RunResult) -> list[str]:
     if not found.rejected_by:
         return [f"{said}."]
     return [f"{said}. As a trial it would be rejected by: {', '.join(found.rejected_by)}."]
+
+
+def section(material: Material) -> Iterator[Block]:
+    """Yield the question, and the answers of the chosen forecasts."""
+    return answer_blocks(material.simulation, material.forecasts)

@@ -16,8 +16,9 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.montecarlo.statistics import Estimate
+    from xlmc.outputs.document.material import Material
 
-__all__ = ["certainty_blocks"]
+__all__ = ["certainty_blocks", "section"]
 
 
 def certainty_blocks(simulation: RunResult, names: Iterable[str]) -> Iterator[Block]:
@@ -43,3 +44,9 @@ def _rows(result: ForecastResult) -> Iterator[tuple[Content, ...]]:
 
 def _row(words: str, share: Estimate) -> tuple[Content, ...]:
     return words or "(empty)", cells.count(round(share.value * share.n)), Measured(share, "share", interval=True)
+
+
+def section(material: Material) -> Iterator[Block]:
+    """Yield the certainty of ranges."""
+    yield Paragraph("The share of the accepted trials below, in and above each range, as it is rounded here.")
+    yield from certainty_blocks(material.simulation, material.forecasts)

@@ -14,8 +14,9 @@ from xlmc.outputs.document.parts import Block, Content, Paragraph, Table
 if TYPE_CHECKING:
     from xlmc.montecarlo.diagnostics.checking import CheckResult
     from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.outputs.document.material import Material
 
-__all__ = ["check_blocks"]
+__all__ = ["check_blocks", "section"]
 
 
 def check_blocks(simulation: RunResult) -> Iterator[Block]:
@@ -44,3 +45,8 @@ def _row(check: CheckResult) -> tuple[Content, ...]:
         Measured(check.share, "share"),
         check.because or NONE,
     )
+
+
+def section(material: Material) -> Iterator[Block]:
+    """Yield the checks."""
+    return check_blocks(material.simulation)

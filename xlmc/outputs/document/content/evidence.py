@@ -18,8 +18,9 @@ from xlmc.outputs.document.parts import Block, Content, Paragraph, Table
 if TYPE_CHECKING:
     from xlmc.montecarlo.diagnostics.agreement import Agreement, Answer, ItemAgreement
     from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.outputs.document.material import Material
 
-__all__ = ["evidence_blocks", "item_table", "means_tables", "trials_sentence"]
+__all__ = ["evidence_blocks", "item_table", "means_tables", "section", "trials_sentence"]
 
 _ITEM_HEADS: Final = (
     "Evidence",
@@ -167,3 +168,8 @@ def _sources(simulation: RunResult) -> Table:
         caption="The rows of xlmc_evidence.",
         spans=(1, 1, 4, 6),
     )
+
+
+def section(material: Material) -> Iterator[Block]:
+    """Yield what is said of evidence, in brief."""
+    return evidence_blocks(material.simulation, material.forecasts, full=False)

@@ -19,8 +19,9 @@ from xlmc.outputs.summary import share_text
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Filter
     from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.outputs.document.material import Material
 
-__all__ = ["count_blocks", "filter_blocks"]
+__all__ = ["count_blocks", "filter_blocks", "section"]
 
 
 def count_blocks(simulation: RunResult) -> Iterator[Block]:
@@ -178,3 +179,8 @@ def _errors(simulation: RunResult) -> Iterator[Block]:
 def _among(simulation: RunResult, met: ErrorMet) -> int:
     """Return how many trials an error was counted in: after a search, forecasts were computed in accepted ones."""
     return simulation.accepted if simulation.rare is not None and met.kind == "forecast" else simulation.trials
+
+
+def section(material: Material) -> Iterator[Block]:
+    """Yield the filters in brief."""
+    return filter_blocks(material.simulation, full=False)

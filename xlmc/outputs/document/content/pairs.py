@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.statements import PAIRS, Pair
+from xlmc.analysis.results.statements import PAIRS, Pair, pairs_of
 from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document.cells import NONE
 from xlmc.outputs.document.measured import Measured
@@ -13,8 +13,9 @@ from xlmc.outputs.document.parts import Block, Content, Paragraph, Table
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.outputs.document.material import Material
 
-__all__ = ["pair_blocks"]
+__all__ = ["pair_blocks", "section"]
 
 _FORECASTS: Final = 6
 """The most forecasts; with more there are more pairs than are told of."""
@@ -55,3 +56,11 @@ def _sentences(simulation: RunResult, pairs: Sequence[Pair]) -> Iterator[str]:
     yield f"{said} A > B is given where both have the same units."
     if len(pairs) == PAIRS and len(simulation.model.forecasts) > _FORECASTS:
         yield f"At most {PAIRS} pairs of forecasts are here, the first ones of the workbook."
+
+
+def section(material: Material) -> Iterator[Block]:
+    """Yield the pairs of the chosen forecasts."""
+    told = {*material.forecasts}
+    pairs = pairs_of(material.simulation) if material.simulation.weighting is None else []
+    shown = [each for each in pairs if {each.first.name, each.second.name} <= told]
+    return pair_blocks(material.simulation, shown)

@@ -6,6 +6,7 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import changes_text
+from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.montecarlo.number_text import count_text
 from xlmc.montecarlo.simulation.simulation import FEW
 from xlmc.outputs.document import cells
@@ -16,8 +17,9 @@ from xlmc.outputs.summary import percent
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.scenario_answers import ForecastAnswer, ScenarioAnswers
+    from xlmc.outputs.document.material import Material
 
-__all__ = ["answer_heads", "answer_rows", "scenario_blocks"]
+__all__ = ["answer_heads", "answer_rows", "scenario_blocks", "section"]
 
 _POINTS: Final = "Difference, points"
 """The heading of a difference of two shares, in percentage points."""
@@ -159,3 +161,9 @@ def _different_options(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
         if len({each.central for _, each in states}) > 1:
             said = [f"{state!r} {percent(each.central)}" for state, each in states]
             yield f"Central ranges of {name!r}: {', '.join(said)}."
+
+
+def section(material: Material) -> Iterator[Block]:
+    """Yield the answers of scenarios."""
+    found = scenario_answers(material.simulation)
+    return scenario_blocks(found, impossible_scenarios(material.simulation), material.forecasts)

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.montecarlo.statistics import Estimate
+    from xlmc.outputs.document.material import Material
 
-__all__ = ["statistics_blocks", "statistics_sentence", "statistics_tables"]
+__all__ = ["section", "statistics_blocks", "statistics_sentence", "statistics_tables"]
 
 _PURE: Final = ("Variance", "Skewness", "Kurtosis (normal 3)", "Coefficient of variation")
 """Statistics that are not in the units of the forecast."""
@@ -123,3 +124,8 @@ def _percent_format(share: float) -> str:
     """Percent with the decimals that the share has: `0%` for 0.51, `0.000%` for 0.99999."""
     decimals = f"{100.0 * share:.10f}".rstrip("0").partition(".")[2]
     return f"0{'.' * bool(decimals)}{'0' * len(decimals)}%"
+
+
+def section(material: Material) -> Iterator[Block]:
+    """Yield the statistics of the chosen forecasts."""
+    return statistics_blocks(material.simulation, material.forecasts)

@@ -1,3 +1,5 @@
+"""How cells read as text and as HTML."""
+
 from __future__ import annotations
 
 import math
@@ -8,62 +10,9 @@ from hypothesis import strategies as st
 
 from xlmc.montecarlo.statistics import Estimate, format_estimate
 from xlmc.outputs.document import cells
-from xlmc.outputs.document.cells import Shown, count, shown_text
+from xlmc.outputs.document.cells import Shown, shown_text
 from xlmc.outputs.document.element import Html
 from xlmc.outputs.document.html_writer import estimate_html, shown_html
-from xlmc.outputs.page.flow import Flow
-from xlmc.outputs.sheets import results_sheet, statistics_sheet
-
-
-def test_headings_paragraphs_and_tables_follow_each_other():
-    flow = Flow()
-    flow.title("Title", "below")
-    flow.heading("One & two")
-    flow.wide("Said.", "remark", 9)
-    flow.table(["Name", "Trials"], [[Shown("a", look="name"), count(1234)]])
-    assert flow.html.source == (
-        "<h2>Title</h2>"
-        '<p class="subtitle">below</p>'
-        "<h3>One &amp; two</h3>"
-        '<p class="remark">Said.</p>'
-        '<div class="wide-table"><table><thead><tr><th scope="col">Name</th><th scope="col" class="number">Trials</th>'
-        '</tr></thead><tbody><tr><th scope="row">a</th><td class="number"><data value="1234">1,234</data></td></tr>'
-        "</tbody></table></div>"
-    )
-
-
-def test_rows_that_are_spread_become_one_table():
-    flow = Flow()
-    flow.line([Shown("Filter", look="header left"), Shown("Cell", look="header left")], (0, 3), 8)
-    flow.line([Shown("f", look="name"), Shown("S!A1")], (0, 3), 8)
-    flow.wide("After.", "remark", 8)
-    source = flow.html.source
-    assert source.count("<table>") == 1
-    assert source.count("<tr>") == 2
-    assert source.endswith('<p class="remark">After.</p>')
-    assert flow.html.source == source
-
-
-def test_rows_of_another_length_begin_another_table():
-    flow = Flow()
-    flow.line([Shown("a"), Shown("b")], (0, 1), 1)
-    flow.line([Shown("c")], (0,), 1)
-    assert flow.html.source.count("<table>") == 2
-
-
-def test_a_sheets_writer_can_write_on_it(run):
-    for write in (results_sheet.write_results, statistics_sheet.write_statistics):
-        flow = Flow()
-        write(flow, run)
-        assert flow.html.source.count("<table>") >= 1
-        assert "area" in flow.html.source or "width" in flow.html.source
-
-
-def test_a_single_cell_is_a_paragraph():
-    flow = Flow()
-    flow.put(3, 0, Shown("nothing to draw", look="alarm"))
-    assert flow.html.source == '<p class="alarm">nothing to draw</p>'
-
 
 CASES = [
     (cells.count(200_000), "200,000"),

@@ -1,0 +1,64 @@
+"""The forecasts: a figure of each."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Final
+
+from xlmc.montecarlo.number_text import count_text
+from xlmc.outputs.document.charts import shares_chart
+from xlmc.outputs.document.drawings import forecast_drawing
+from xlmc.outputs.document.parts import Block, Figure, Paragraph
+from xlmc.outputs.histogram import figures_of, not_drawn
+from xlmc.outputs.summary import answer_text, central_text, percent
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.simulation.simulation import RunResult
+    from xlmc.outputs.document.material import Material
+
+__all__ = ["section"]
+
+
+_FEW: Final = 4
+"""Forecasts whose figures are large, two a page; those of more stand four a page."""
+_MOST_FIGURES: Final = 12
+"""Forecasts that a report draws."""
+_LARGE, _SMALL = 160.0, 100.0
+"""Widths of the figures of forecasts, in millimetres."""
+
+
+def section(material: Material) -> Iterator[Block]:
+    """Yield a figure of each chosen forecast."""
+    simulation = material.simulation
+    width = _LARGE if len(material.forecasts) <= _FEW else _SMALL
+    shown = figures_of(simulation, material.forecasts)
+    if len(shown) > _MOST_FIGURES:
+        yield Paragraph(
+            f"Figures of the first {_MOST_FIGURES} of {len(shown)} forecasts. The sheet Charts of the result workbook "
+            f"and the page show {_many(simulation)}; --forecasts chooses those of the report."
+        )
+    for figure in shown[:_MOST_FIGURES]:
+        row, bins = figure.answer, figure.bins
+        units = f" {row.units}" if row.units else ""
+        per = f" per {bins.form.width(bins.width)}{units}" if bins.names is None else ""
+        caption = (
+            f"{figure.name}. Above, the accepted trials{per}; below, the share of them that "
+            f"is not above each value. Dark: the central {percent(row.share)} of {count_text(row.trials)} accepted "
+            f"trials, from {central_text(row)}{units}. Vertical line: the mean, {answer_text(row)}{units}."
+        )
+        if row.is_share:
+            caption = f"{figure.name}: {figure.said}."
+        if bins.counted < row.trials:
+            caption += f" Trials are weighted: the figure shows {count_text(bins.counted)} trials of equal weight."
+        if bins.below or bins.above:
+            caption += not_drawn(bins)
+        drawing = (
+            shares_chart(figure) if row.is_share else forecast_drawing(figure, simulation.results[row.name], width)
+        )
+        yield Figure(drawing, caption)
+
+
+def _many(simulation: RunResult) -> str:
+    """Return how many forecasts sheets and page draw, in words."""
+    told = len(simulation.detailed)
+    return "all of them" if told == len(simulation.model.forecasts) else f"the first {told} (--detailed)"

@@ -1,0 +1,171 @@
+"""How the answers move as each limit of each filter moves: the shares accepted, the slopes, and every answer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Final
+
+from xlmc.analysis.results.statements.in_words import given_text
+from xlmc.analysis.studies.sensitivity import sensitivities
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.number_text import count_text
+from xlmc.outputs.document import cells
+from xlmc.outputs.document.cells import Shown
+from xlmc.outputs.document.charts import limit_chart
+from xlmc.outputs.document.measured import Measured
+from xlmc.outputs.document.parts import Block, Content, Figure, Heading, Paragraph, Table
+
+if TYPE_CHECKING:
+    from xlmc.analysis.studies.sensitivity import (
+        FilterLimit,
+        ForecastSensitivity,
+        LimitAnswer,
+        LimitPoint,
+        Sensitivities,
+    )
+    from xlmc.outputs.document.material import Material
+
+__all__ = [
+    "NOT_MOVED",
+    "acceptance_table",
+    "answers_table",
+    "limit_blocks",
+    "limit_figures",
+    "limit_heading",
+    "limit_sentences",
+    "moved_caption",
+    "nothing_moves",
+    "section",
+    "slopes_table",
+]
+
+NOT_MOVED: Final = "The accepted trials do not say by how much it could be moved."
+
+
+def limit_blocks(found: Sensitivities) -> Iterator[Block]:
+    """Yield what moving a limit means, then the charts and tables of each; nothing where no filter has one."""
+    if not (found.filter_limits or found.varying_limits or found.omitted_limits):
+        return
+    for sentence in limit_sentences(found):
+        yield Paragraph(sentence, "small")
+    forecasts = {each.forecast: each for each in found.forecasts}
+    for limit in found.filter_limits:
+        yield Heading(limit_heading(limit), 2)
+        if limit.points:
+            yield from limit_figures(limit, forecasts)
+            yield from (acceptance_table(limit), slopes_table(limit), answers_table(limit, forecasts))
+        else:
+            yield Paragraph(NOT_MOVED)
+
+
+def limit_heading(limit: FilterLimit) -> str:
+    """Name a limit."""
+    return f"{limit.filter}: {limit.relation} {given_text(limit.limit)} ({limit.cell})"
+
+
+def limit_sentences(found: Sensitivities) -> list[str]:
+    """Sentences that say what moving a limit means."""
+    said = [
+        "One limit is moved; all others stay. A tighter limit keeps some of the accepted trials. A looser one also "
+        "accepts trials that nothing else rejects; these come from the run's first trials, so their errors are larger. "
+        "Changes and slopes compare runs that share trials, and their errors allow for that. A limit is evidence: "
+        "this sheet shows how much its exact value matters, not which value is right."
+    ]
+    if found.varying_limits:
+        said.append(f"Not moved, because the limit varies with the assumptions: {', '.join(found.varying_limits)}.")
+    if found.omitted_limits:
+        said.append(
+            f"{count_text(found.omitted_limits)} further limits were left out: the last of very many, "
+            "or all of them where "
+            "accepted trials are rare, because trials near a limit are then not among those drawn before the search."
+        )
+    return said
+
+
+def acceptance_table(limit: FilterLimit) -> Table:
+    """Return the share of the trials that is accepted at each value of the limit."""
+    rows = (
+        (_tighter_or_looser(each.limit, limit), cells.exact(each.limit), cells.count(each.trials), _share(each))
+        for each in limit.points
+    )
+    return Table("", ("Limit", "Value", "Trials", "Share"), tuple(rows))
+
+
+def _share(point: LimitPoint) -> Measured:
+    return Measured(point.acceptance, "share")
+
+
+def _tighter_or_looser(value: float, limit: FilterLimit) -> str:
+    if value == limit.limit:
+        return "as it is"
+    looser = (value < limit.limit) == (limit.relation in ("at least", "above"))
+    return "looser" if looser else "tighter"
+
+
+def slopes_table(limit: FilterLimit) -> Table:
+    """Return how fast the mean of each forecast changes with the limit."""
+    rows = tuple((slope.forecast, Measured(slope.mean)) for slope in limit.slopes)
+    return Table("", ("Change of the mean of …, per unit of the limit", "Slope"), rows)
+
+
+def answers_table(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> Table:
+    """Return every forecast at every value of the limit, a row for each value, the forecasts one after the other."""
+    heads = ("Forecast", "Limit", "Mean", "Change of mean", "Range from", "to", "Change / range", "±")
+    rows: list[tuple[Content, ...]] = []
+    for index, slope in enumerate(limit.slopes):
+        now = next(point.answers[index] for point in limit.points if point.limit == limit.limit)
+        forecast = forecasts[slope.forecast]
+        rows += [_answer(forecast, point.limit, point.answers[index], now) for point in limit.points]
+    return Table("", heads, tuple(rows))
+
+
+def _answer(forecast: ForecastSensitivity, limit: float, answer: LimitAnswer, now: LimitAnswer) -> tuple[Content, ...]:
+    width, look, form, like = now.high.value - now.low.value, "number", forecast.form, now.mean
+    if answer is now:
+        look = "second number"
+    return (
+        forecast.forecast,
+        Shown(limit, look=look),
+        Measured(answer.mean, form=form, look=look, like=like),
+        Measured(answer.change, "change", form, look, like=like),
+        Measured(answer.low, form=form, look=look, like=like),
+        Measured(answer.high, form=form, look=look, like=like),
+        *(
+            Shown(None if each is None or width <= 0.0 else each / width, "0.0%", look)
+            for each in (answer.change.value, answer.change.error)
+        ),
+    )
+
+
+def limit_figures(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> Iterator[Figure]:
+    """Yield a chart for the forecasts of each unit and kind: changes in different units have no common axis."""
+    alike: dict[tuple[str, Form], list[int]] = {}
+    for index, slope in enumerate(limit.slopes):
+        each = forecasts[slope.forecast]
+        form = replace(each.form, report_to=None)
+        alike.setdefault((each.change_units, form if any(form.affixes) else PLAIN), []).append(index)
+    for number, ((unit, form), indexes) in enumerate(alike.items()):
+        shown = forecasts[limit.slopes[indexes[0]].forecast].change_form if form != PLAIN else PLAIN
+        yield Figure(limit_chart(limit, indexes, unit, shown), "" if number else moved_caption(limit))
+
+
+def moved_caption(limit: FilterLimit) -> str:
+    """Return the caption of the chart of the changes."""
+    return (
+        f"How far each forecast's mean moves from that with the limit as it is ({given_text(limit.limit)}); whiskers "
+        f"are standard errors of the change. Other filters and limits stay.{nothing_moves(limit)}"
+    )
+
+
+def nothing_moves(limit: FilterLimit) -> str:
+    """Return the sentence on changes of 0 ± 0; empty if some change is not."""
+    if len({point.trials for point in limit.points}) > 1:
+        return ""
+    return " No trial that everything else keeps lies between these limits, so nothing moves; with more trials it may."
+
+
+def section(material: Material) -> Iterator[Block]:
+    """Yield how the answers move with limits."""
+    if material.simulation.weighting is None:
+        yield from limit_blocks(sensitivities(material.simulation))

@@ -82,6 +82,15 @@ def test_data(options, text):
     assert distribution_text(Assumption("a", HERE, "Custom", {}, HERE, data=data)) == text
 
 
+def test_a_frozen_row_without_a_distribution_is_held_at_its_value():
+    parameters = {"low": 6100.0, "high": 6100.0}
+    assert (
+        distribution_text(Assumption("a", HERE, "Uniform", parameters, HERE, base=6100.0, frozen=True))
+        == "held at 6,100"
+    )
+    assert distribution_text(Assumption("a", HERE, "Uniform", parameters, HERE)) == "Uniform: Low 6,100, High 6,100"
+
+
 def test_parameters_stand_in_the_familys_order():
     assert parameters_text(Assumption("a", HERE, "Uniform", {"high": 2.0, "low": 1.0}, HERE)) == "Low 1, High 2"
 

@@ -33,6 +33,7 @@ EXAMPLES = {
     "A distribution": "Arcsine",
     "A sampling method": "antithetic",
     "An engine": "slow",
+    "A section": "signs",
     "A result sheet": "Largest",
 }
 SETTINGS = {"Trials": TRIALS, "Sampling": "Antithetic", "Engine": "slow", "Purpose": "Final"}
@@ -106,6 +107,8 @@ def folder(tmp_path_factory):
         book.active.append([])
         top += len(rows) + 1
     book.save(folder / "book.xlsx")
+    shown = "import xlmc\nprint(xlmc.load('book.xlsx').simulate()._repr_html_())\n"
+    (folder / "notebook.py").write_text(shown, encoding="utf-8")
     return folder
 
 
@@ -137,6 +140,7 @@ def printed(enlarged, folder, run):
     Last come the arguments that repeat a run with the usual settings.
     """
     commands = {
+        "notebook": ["notebook.py"],
         "replay": ["xlmc", "replay", "slow.xlsx"],
         "help": ["xlmc", "simulate", "--help"],
         "distributions": [str(enlarged / "docs" / "list_distributions.py")],
@@ -144,7 +148,8 @@ def printed(enlarged, folder, run):
     }
     runs = {"slow": [], "jit": ["--engine", "jit", "--sampling", "antithetic"]}
     for engine, options in runs.items():
-        files = ["-o", f"{engine}.xlsx", "--json", f"{engine}.json", "--extract", f"{engine}.csv"]
+        reports = [each for ending in ("html", "pdf", "docx") * (engine == "slow") for each in ("-o", f"slow.{ending}")]
+        files = ["-o", f"{engine}.xlsx", *reports, "--json", f"{engine}.json", "--extract", f"{engine}.csv"]
         runs[engine] = ["xlmc", "simulate", "book.xlsx", *files, "--quiet", *options]
     commands = runs | commands
     done = run("-c", COMMANDS, json.dumps(list(commands.values())), folder=folder)
@@ -213,10 +218,23 @@ def test_the_setting_is_recorded_and_repeated(folder, printed):
 
 def test_the_sheet_holds_the_largest_values(folder, answers, trials):
     book = openpyxl.load_workbook(folder / "slow.xlsx")
-    assert book.sheetnames[-2:] == ["Largest", "Record"]
+    assert book.sheetnames[-4:-1] == ["Largest", "Record", "Signs of the answers"]  # then what its chart draws
     rows = {row[0]: row[1:6] for row in book["Largest"].iter_rows(values_only=True)}
     for name in FORECASTS:
         assert list(rows[name]) == sorted((trial[name] for trial in trials), reverse=True)[:5]
+
+
+def test_the_section_is_in_every_output(folder, printed, trials):
+    pypdf, docx = pytest.importorskip("pypdf"), pytest.importorskip("docx")
+    shares = [sum(trial[name] > 0.0 for trial in trials) / TRIALS for name in FORECASTS]
+    rows = openpyxl.load_workbook(folder / "slow.xlsx")["Signs of the answers"].iter_rows(values_only=True)
+    assert [row[1] for row in rows if row[0] in FORECASTS] == shares
+    texts = [(folder / "slow.html").read_text(encoding="utf-8"), printed["notebook"], printed["slow"]]
+    texts.append("\n".join(each.text for each in docx.Document(str(folder / "slow.docx")).paragraphs))
+    texts.append("".join(page.extract_text() for page in pypdf.PdfReader(folder / "slow.pdf").pages))
+    for text in texts:
+        assert "Signs of the answers" in text
+        assert "on which side of 0" in " ".join(text.split())
 
 
 def test_the_run_is_recorded_and_repeated(folder, printed):

@@ -13,6 +13,7 @@ from xlmc.montecarlo.definitions.stopping import GOALS
 from xlmc.montecarlo.definitions.tables.settings import _settings
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
+from xlmc.outputs.document import SECTIONS
 from xlmc.outputs.sheets.book import SHEETS
 
 __all__ = ["undescribed"]
@@ -37,6 +38,8 @@ def _expected() -> Iterator[tuple[str, str, str]]:
         yield from ((page, engine, f"`{engine}`") for page in ("engines.md", "command-line.md", "workbooks.md"))
     for sheet in SHEETS:
         yield "guide.md", sheet.name, f"**{sheet.name}**"
+    for section in SECTIONS:
+        yield "report.md", section, f"| `{section}` |"
     for option in (option for goal in GOALS.values() for option in goal.options):
         typed = f"--{option.name.replace('_', '-')}"
         yield "command-line.md", typed, f"`{typed}`"

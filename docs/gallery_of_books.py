@@ -28,6 +28,8 @@ BOOKS = {
     "examples/textbook-claim.xlsx": "A textbook's claim, held against the equations",
     "examples/bumper-test.xlsx": "A bumper test at 5.5 mph: both delta-V",
     "examples/motorcycle-head-on.xlsx": "A motorcycle head-on into a car",
+    "examples/thrown-body.xlsx": "A body thrown by a vehicle: its speed from where it lay",
+    "examples/crossing-pedestrian.xlsx": "A pedestrian who walked 20 ft: how far away the car was",
     "examples/crush-balance.xlsx": "Damage energy of two vehicles",
     "examples/skid-100-ft.xlsx": "A skid of 100 feet, and the way before it",
     "examples/yaw-mark.xlsx": "The critical speed of a yaw mark",

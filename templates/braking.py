@@ -125,7 +125,7 @@ STOPPING_SPEED = Equation(
 )
 
 RESPONSE_FILTER = FilterRow(
-    "Response time within its limits",
+    "Response time, beyond its limits",
     "t_beyond",
     "Nobody responds sooner; a later response would be a different account (limits: sheet Inputs). Without braking "
     "it rejects nothing",

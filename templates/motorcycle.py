@@ -673,7 +673,7 @@ TEMPLATE = Template(
     filters=(
         FilterRow("Impact speed", "v_i", "It moved forward, or had come to rest", at_least=0),
         FilterRow(
-            "A throw was measured",
+            "Throw measured (1 = yes)",
             "rider_known",
             "A blank length gives no answer",
             above=0.5,

@@ -390,14 +390,14 @@ TEMPLATE = Template(
     filters=(
         RESPONSE_FILTER,
         FilterRow(
-            "Marks were measured",
+            "Marks after the impact measured (1 = yes)",
             "marks_known",
             "A blank length gives no answer",
             above=0.5,
             only_for="«1» impact speed, from the marks",
         ),
         FilterRow(
-            "A throw was measured",
+            "Throw measured (1 = yes)",
             "throw_known",
             "A blank length gives no answer",
             above=0.5,

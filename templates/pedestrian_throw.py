@@ -269,7 +269,7 @@ TEMPLATE = Template(
     ),
     filters=(
         FilterRow(
-            "Angle of a throw",
+            "Angle, in units of twice the best",
             "steepness",
             "A vehicle pushes or lifts a body forward: not steeper than twice the angle that throws farthest",
             at_most=1,

@@ -13,6 +13,8 @@ from templates import (
     low_speed,
     momentum_energy,
     motorcycle,
+    pedestrian,
+    pedestrian_throw,
     skid,
     time_distance,
     video_speed,
@@ -321,6 +323,46 @@ _NEARLY_HEAD_ON = filled(
     ),
 )
 
+_THROWN = filled(
+    edition(pedestrian_throw.TEMPLATE, Edition.IMPERIAL),
+    "A body thrown at 30 mph",
+    "60.42 ft from the impact to rest; 15° above the ground, 2.3 ft of fall, friction 0.66",
+    {"s": 60.42319, "mu": 0.66, "H": 2.3, "angle": 15, "efficiency": 0.9, "g": 32.174},
+    _GIVEN,
+    _about(
+        "A worked example, checked by a program that steps through flight, landing and slide in 10 µs: a body that "
+        "leaves at 30 mph, 15° above the ground, falls 2.3 ft and slides at 0.66 comes to rest after 60.42 ft. The "
+        "sheet returns 30 mph. If 0.9 of the vehicle's speed was given to it, the vehicle had 33.3 mph.",
+        "Where the angle is not known, the throw alone says at least 28.46 mph. Hit and run: no more than that.",
+    ),
+)
+
+_CROSSING = filled(
+    edition(pedestrian.TEMPLATE, Edition.IMPERIAL),
+    "A pedestrian who walked 20 ft",
+    "25 mph, not braked; 4 to 5 ft/s on foot: how far away was the car?",
+    {
+        "f": 0.7,
+        "d_before": 0,
+        "d_after": round((25 / _MPH_PER_FT_S) ** 2 / (2 * 0.7 * 32.174), 9),
+        "s": 0,
+        "walked": 20,
+        "walking": (4, 5),
+        "known": 1,
+        "braked": 2,
+        "limit": 20,
+        "g": 32.174,
+    },
+    "As the example gives it",
+    _about(
+        "A published example (Schorr, forensicdjs.com): a pedestrian walks 20 ft at 4 to 5 ft/s, and a car at 25 mph is "
+        "then 145 to 180 ft away when they step off. Exactly it is 146.7 to 183.3 ft. The speed is entered as the "
+        "braking that it takes after the impact, 29.84 ft at 0.7 g, which the example does not have.",
+        "The car had not braked when it struck. So the scene gives a lower bound of the response time, 4 to 5 s, and "
+        "for 20 mph both ends: stops always, if it brakes as soon as that time has passed; never, if it never brakes.",
+    ),
+)
+
 _SEARCH_RANGE = "Searched: all that the scene allows"
 _REST = filled(
     replace(
@@ -381,6 +423,8 @@ PUBLISHED: dict[str, Template] = {
     "edr-hard-braking": _RECORDED,
     "video-two-frames": _TWO_FRAMES,
     "nearly-head-on": _NEARLY_HEAD_ON,
+    "thrown-body": _THROWN,
+    "crossing-pedestrian": _CROSSING,
     "rest-positions": _REST,
 }
 """File name without its ending -> what the workbook says."""

@@ -133,9 +133,9 @@ def curve_diagram(restitution: str, speed: str, *, low_speeds: bool = False) -> 
         "Closing speed, [mph|km/h]",
         "Restitution",
         (
-            Curve("Published, to", Look.FIRST, ends("e_to")),
-            Curve("Published, from", Look.SECOND, ends("e_from")),
+            Curve("Range on sheet Inputs, to", Look.FIRST, ends("e_to")),
+            Curve("The same, from", Look.SECOND, ends("e_from")),
             Curve("Base case", Look.POINT, ((speed, restitution),)),
         ),
-        remark="Drawn from the cells below. The published ranges stand on sheet Inputs.",
+        remark="Drawn from the cells below. The range is that of the points on sheet Inputs, as published until typed over.",
     )

@@ -113,14 +113,14 @@ TEMPLATE = Template(
     filters=(
         RESPONSE_FILTER,
         FilterRow(
-            "Not avoided",
+            "Same driver: avoided (1 = yes)",
             "avoided_same",
             "The impact speed is that of the trials in which there is an impact",
             below=0.5,
             only_for=_HIT,
         ),
         FilterRow(
-            "Arrives",
+            "Same driver: stops (1 = yes)",
             "stops_same",
             "The margin is that of the trials in which the vehicle arrives",
             below=0.5,

@@ -14,6 +14,7 @@ _EXAMPLES: Final = (
     "barrier-corner",
     "collinear-equal-cars",
     "collinear-head-on",
+    "crossing-pedestrian",
     "crush-balance",
     "bumper-test",
     "edr-hard-braking",
@@ -25,6 +26,7 @@ _EXAMPLES: Final = (
     "rest-positions",
     "skid-100-ft",
     "textbook-claim",
+    "thrown-body",
     "video-two-frames",
     "yaw-mark",
 )

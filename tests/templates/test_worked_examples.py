@@ -403,6 +403,8 @@ BOOKS = {
     "crush-balance": {"balance_2": (25.138, 5e-4), "E_1": (70_178, 1.5), "E_2": (107_743, 1.5)},
     "bumper-test": {"dV1_mph": (3.5, 1e-9), "dV2_mph": (3.1, 1e-9), "V_limit_mph": (5.0, 5e-2)},
     "motorcycle-head-on": {"vm_kmh": (75, 1e-9), "per_tenth": (28.8, 5e-2)},
+    "thrown-body": {"v_mph": (30, 1e-5), "V_vehicle_mph": (100 / 3, 1e-5), "vmin_mph": (28.46, 5e-3)},
+    "crossing-pedestrian": {"vi_mph": (25, 1e-8), "D_0": (162.963, 5e-4), "stops": (1, 0), "stops_least": (0, 0)},
     "airborne-amy": {"v_mph": (42.3523, 5e-5), "v1_mph": (47.2679, 5e-5)},
     "left-turn": {"v0_mph": (53.4451, 5e-5), "t_response": (1.739348, 5e-7), "margin": (0.2587, 5e-5)},
     "edr-hard-braking": {"t_0": (45.9770, 5e-5), "vi_mph": (42.1381, 5e-5), "closing": (34.0909, 5e-5)},
@@ -423,6 +425,27 @@ def test_example_book_shows_the_published_figures(name, shown):
 def test_example_book_runs(name, book_path):
     run = simulated(load(book_path[name]), 1_000)
     assert run.accepted == 1_000
+
+
+def test_the_pedestrian_who_walked_20_ft_was_145_to_180_ft_away(book_path):
+    """Schorr (forensicdjs.com), exactly 146.7 to 183.3 ft; at 20 mph both ends are certain."""
+    run = simulated(load(book_path["crossing-pedestrian"]), 20_000)
+    away = run.forecasts["Distance when the hazard began"]
+    assert (away.min(), away.max()) == pytest.approx((25 / MPH * 4, 25 / MPH * 5), abs=0.1)
+    assert run.forecasts["Same driver at the limit: stops, at most (1 = yes)"].all()
+    assert not run.forecasts["Same driver at the limit: stops, at least (1 = yes)"].any()
+
+
+def test_a_thrown_body_lies_where_a_program_that_steps_through_time_puts_it():
+    """30 mph at 15°, a fall of 2.3 ft; landing takes μ times the speed downward from that along the ground."""
+    step, g, mu = 1e-4, 32.174, 0.66
+    x, y, u, w = 0.0, 2.3, 44 * math.cos(math.radians(15)), 44 * math.sin(math.radians(15))
+    while y > 0:
+        x, y, w = x + u * step, y + w * step - g * step**2 / 2, w - g * step
+    u += mu * w
+    while u > 0:
+        x, u = x + u * step, u - mu * g * step
+    assert x == pytest.approx(60.42319, abs=0.01)
 
 
 def test_every_worked_example_is_a_book(builders):

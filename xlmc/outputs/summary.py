@@ -387,7 +387,7 @@ def _of_some(simulation: RunResult) -> Iterator[Phrase]:
         yield Phrase(each.forecast, is_name=True)
         yield Phrase(f" only those {count_text(simulation.accepted - each.trials)} count in which ")
         yield Phrase(each.filter.name, is_name=True)
-        yield Phrase(f" {limits_text(each.filter)}.")
+        yield Phrase(f" is {limits_text(each.filter)}.")
 
 
 def _count_text(count: int, one: str, several: str) -> str:

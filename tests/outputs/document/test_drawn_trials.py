@@ -53,7 +53,7 @@ def with_evidence(folder, used):
 def test_each_point_is_an_accepted_trial(impact):
     chart = drawn_trials(impact)
     assert (chart.across, chart.data.upwards) == ("Closing speed, mph", "Restitution")
-    assert [line.name for line in chart.data.lines] == ["Published, to", "Published, from"]
+    assert [line.name for line in chart.data.lines] == ["Range on sheet Inputs, to", "The same, from"]
     points = np.array(chart.data.cloud.points)
     assert points.shape == (1_000, 2)
     np.testing.assert_array_equal(points[:, 0], impact.forecasts["Closing speed"][:1_000])
@@ -111,7 +111,11 @@ def test_the_chart_of_the_result_workbook_is_a_native_one(impact, tmp_path):
 
 def test_matplotlib_draws_it(impact):
     axes = xlmc.load(TEMPLATES["low-speed"]).simulate(200).plot(kind="drawing").axes[0]
-    assert [line.get_label() for line in axes.lines] == ["Accepted trials", "Published, to", "Published, from"]
+    assert [line.get_label() for line in axes.lines] == [
+        "Accepted trials",
+        "Range on sheet Inputs, to",
+        "The same, from",
+    ]
     assert axes.get_xlabel() == "Closing speed, mph"
 
 

@@ -433,7 +433,7 @@ _GUIDE = (
             "Restitution against closing speed is drawn on sheet Scene, with the base case in it; its points stand on "
             "sheet Inputs. Type over them where you have tests of like vehicles.",
             "The restitution drawn in a run is wider than that range: its tail goes up to the 0.75 of King, Siegmund "
-            "and Bailey, for which no closing speeds could be read. So trials lie above the range, unless a row of sheet "
+            "and Bailey, for which no closing speeds could be read. So trials lie above it, unless a row of sheet "
             "Evidence is used. Decide before the run which tests are like this impact.",
         ),
         (

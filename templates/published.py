@@ -355,8 +355,8 @@ _CROSSING = filled(
     },
     "As the example gives it",
     _about(
-        "A published example (Schorr, forensicdjs.com): a pedestrian walks 20 ft at 4 to 5 ft/s, and a car at 25 mph is "
-        "then 145 to 180 ft away when they step off. Exactly it is 146.7 to 183.3 ft. The speed is entered as the "
+        "A published example (Schorr, forensicdjs.com): a pedestrian walks 20 ft at 4 to 5 ft/s, and a car at 25 mph "
+        "is then 145 to 180 ft away when they step off. Exactly it is 146.7 to 183.3 ft. The speed is entered as the "
         "braking that it takes after the impact, 29.84 ft at 0.7 g, which the example does not have.",
         "The car had not braked when it struck. So the scene gives a lower bound of the response time, 4 to 5 s, and "
         "for 20 mph both ends: stops always, if it brakes as soon as that time has passed; never, if it never brakes.",

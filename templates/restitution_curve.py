@@ -137,5 +137,5 @@ def curve_diagram(restitution: str, speed: str, *, low_speeds: bool = False) -> 
             Curve("The same, from", Look.SECOND, ends("e_from")),
             Curve("Base case", Look.POINT, ((speed, restitution),)),
         ),
-        remark="Drawn from the cells below. The range is that of the points on sheet Inputs, as published until typed over.",
+        remark="Drawn from the cells below. The range is that of the points on sheet Inputs.",
     )

@@ -6,11 +6,11 @@
 
 A mutant differs from the code in one place: a comparison, an operator, `and` or `or`, a number, True or False, a `not`.
 It is made in a copy of the repository. pytest runs the examples in the module and the test file of its own, if there
-are any, then the folder that mirrors its own, then the files of tests in the folder above, until a test fails or the
-processor time is up (that of pytest and its children, so that a busy machine decides nothing). In the end every test
-that killed a mutant is run without one: where it fails even so, it killed nothing. Survivors are printed with file,
-line and what was changed: some change nothing that anybody could see, and the others ask for a test. This takes a
-minute for a mutant at most, so it is no part of `.ci/run`.
+are any; then tests near by that import it, the folder that mirrors its own, and the files in the folder above, until a
+test fails or the processor time is up: that of pytest and its children, so that a busy machine decides nothing. In the
+end every test that killed a mutant is run without one: where it fails even so, it killed nothing. Survivors are printed
+with file, line and what was changed: some change nothing that anybody could see, and the others ask for a test. This
+takes a minute for a mutant at most, so it is no part of `.ci/run`.
 
 No mutants are made of what cannot change a result: annotations and names of types, decorators (`slots=True`, the size
 of a cache), bases and keywords of a class, functions without a body (`@overload`, protocols), what only type checkers
@@ -24,6 +24,7 @@ import ast
 import json
 import os
 import random
+import re
 import resource
 import shutil
 import subprocess
@@ -141,7 +142,7 @@ def _other_constant(value: object) -> str:
 
 
 def tests_of(path: Path) -> list[list[str]]:
-    """Return what pytest is given for a module in turn: its examples and file, its folder, the files above."""
+    """Return what pytest is given for a module in turn: its own tests, those that import it, its folder, that above."""
     parts = path.with_suffix("").parts[1:]
     folder = Path("tests", *parts[:-1])
     own = folder / f"test_{parts[-1]}.py"
@@ -149,9 +150,15 @@ def tests_of(path: Path) -> list[list[str]]:
         folder = folder.parent
     examples = [path] if (ROOT / path).exists() and ">>>" in (ROOT / path).read_text(encoding="utf-8") else []
     first = [*examples, *([own] if (ROOT / own).exists() else [])]
-    above = sorted(each.relative_to(ROOT) for each in (ROOT / folder.parent).glob("test_*.py"))
-    rest = [] if folder == Path("tests") else [[folder], above if folder.parent != Path("tests") else []]
-    return [[str(each) for each in tests] for tests in [first, *rest] if tests]
+    if folder == Path("tests"):
+        return [[str(each) for each in first]] if first else []
+    wide = folder if folder.parent == Path("tests") else folder.parent
+    module = re.compile(rf"^(from|import) {re.escape('.'.join(path.with_suffix('').parts))} ", re.MULTILINE)
+    near = [each.relative_to(ROOT) for each in sorted((ROOT / wide).rglob("test_*.py"))]
+    importing = [each for each in near if module.search((ROOT / each).read_text(encoding="utf-8"))]
+    above = [each for each in near if each.parent == wide != folder]
+    stages = (first, [each for each in importing if each != own], [folder], above)
+    return [[str(each) for each in tests] for tests in stages if tests]
 
 
 def failures(tests: Sequence[str], copy: Path, seconds: float, *options: str) -> set[str] | None:
@@ -164,7 +171,7 @@ def failures(tests: Sequence[str], copy: Path, seconds: float, *options: str) ->
     environment = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
     try:  # a process that sleeps for ever uses no processor time
         done = subprocess.run(
-            command, cwd=copy, env=environment, timeout=20 * seconds, capture_output=True, check=False
+            command, cwd=copy, env=environment, timeout=10 * seconds, capture_output=True, check=False
         )
     except subprocess.TimeoutExpired:
         return None

@@ -83,6 +83,25 @@ def test_the_tests_of_a_module_are_those_that_mirror_it(module, tests):
     assert mutants.tests_of(Path(module)) == [[str(Path(each)) for each in group] for group in tests]
 
 
+def test_tests_near_by_that_import_a_module_come_before_its_folder(tmp_path, monkeypatch):
+    monkeypatch.setattr(mutants, "ROOT", tmp_path)
+    for name, text in [
+        ("excel/functions/test_few.py", ""),
+        ("excel/functions/test_own.py", "from xlmc.excel.functions.few import f\n"),
+        ("excel/test_above.py", "import xlmc.excel.functions.few_more as more\n"),
+        ("excel/workbook/test_near.py", "import xlmc.excel.functions.few as few\n"),
+        ("engine/test_far.py", "import xlmc.excel.functions.few as few\n"),
+    ]:
+        (tmp_path / "tests" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "tests" / name).write_text(text, encoding="utf-8")
+    assert [[Path(each).name for each in group] for group in mutants.tests_of(Path("xlmc/excel/functions/few.py"))] == [
+        ["test_few.py"],
+        ["test_own.py", "test_near.py"],
+        ["functions"],
+        ["test_above.py"],
+    ]
+
+
 @pytest.mark.parametrize(
     ("change", "end"), [(("True", "False"), "killed"), (("False", "True"), "survived")], ids=["killed", "survived"]
 )

@@ -16,6 +16,7 @@ from openpyxl.workbook.defined_name import DefinedName
 from openpyxl.worksheet.formula import ArrayFormula
 
 from xlmc import excel
+from xlmc.cli.calculate import _exact
 from xlmc.errors import ErrorCode
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -324,3 +325,22 @@ def test_a_mistake_is_one_message_and_nothing_is_written(xlmc, book, tmp_path, a
     assert outcome.err.count("\n") == 1
     assert book.read_bytes() == before
     assert not [*tmp_path.glob("copy*"), *tmp_path.glob("book-*")]
+
+
+@pytest.mark.parametrize(
+    ("value", "written"),
+    [
+        (6.0, 6),
+        (-6.0, -6),
+        (2.5, 2.5),
+        (999_999_999_999_999.0, 999_999_999_999_999),
+        (1e15, 1e15),
+        (-1e15, -1e15),
+        (True, "TRUE"),
+        (False, "FALSE"),
+        ("six", "six"),
+    ],
+)
+def test_a_value_in_csv_has_all_its_digits(value, written):
+    found = _exact(value)
+    assert (found, type(found)) == (written, type(written))

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from xlmc.montecarlo.distributions import FAMILIES
-from xlmc.montecarlo.distributions.base import SMALLEST_U, Family, Member
+from xlmc.montecarlo.distributions.base import SMALLEST_U, TRIED_U, Family, Member
 
 GOOD = {
     "Uniform": (2.0, 6.0),
@@ -160,3 +160,12 @@ def test_zero_stands_for_half_a_step_where_the_quantile_is_infinite():
 def test_a_family_without_an_upper_tail_is_refused_when_it_is_written():
     with pytest.raises(TypeError, match="Half has no upper tail: write `_mirrored`, or both `_sf` and `_isf`"):
         type("Half", (Family,), {"_sf": Family._cdf})
+
+
+def test_quantiles_are_tried_from_the_least_to_the_largest_u_that_a_sampler_gives():
+    """Draws use u = k·2^-53; the ends of a tail that rare acceptance looks at go down to 2^-80."""
+    assert list(TRIED_U) == sorted(TRIED_U)
+    assert (TRIED_U[0], TRIED_U[-1]) == (2.0**-80, np.nextafter(1.0, 0.0))
+    assert {2.0**-54, 0.5} <= {*TRIED_U}
+    assert max(np.diff(TRIED_U)) <= 0.2 + 1e-12
+    assert sum(u < 0.5 for u in TRIED_U) == sum(u > 0.5 for u in TRIED_U) + 1

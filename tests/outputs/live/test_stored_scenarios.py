@@ -16,7 +16,7 @@ from xlmc.outputs.live.adjustments import Adjustments
 from xlmc.outputs.live.library import Library
 from xlmc.outputs.live.protocol import PageMessage
 from xlmc.outputs.live.session import Session
-from xlmc.outputs.live.stored_scenarios import Keeper
+from xlmc.outputs.live.stored_scenarios import Keeper, _merged
 
 
 def changed(name, key="high", value=0.9, of="assumption"):
@@ -140,6 +140,19 @@ def test_two_programs_on_one_workbook_take_nothing_from_each_other(book, keeper)
     first.keep(book, {"b": changed("x", value=3.0)}, Adjustments())
     found = second.keep(book, {"b": changed("x", value=4.0)}, Adjustments())
     assert sorted(each.assumptions["x"]["high"] for each in found.values()) == [3.0, 4.0]
+
+
+def test_of_one_name_with_two_contents_both_are_kept_under_the_next_free_name():
+    a, b, c, d = (changed("x", value=value) for value in (1.0, 2.0, 3.0, 4.0))
+    assert _merged({}, {"s": a}, {"s": b}) == {"s": a, "s (2)": b}
+    assert _merged({}, {"s": a, "s (2)": c}, {"s": b}) == {"s": a, "s (2)": c, "s (3)": b}
+    assert _merged({}, {"s": a}, {"s": b, "s (2)": d}) == {"s": a, "s (2)": d, "s (3)": b}
+    assert _merged({}, {"s": a}, {"s": a}) == {"s": a}
+    assert _merged({"s": a}, {"s": a}, {"s": b}) == {"s": b}  # changed in the other window alone
+    assert _merged({"s": a}, {"s": b}, {"s": a}) == {"s": b}
+    assert _merged({"s": a}, {"s": a}, {}) == {}  # forgotten in the other
+    assert _merged({"s": a}, {}, {"s": a}) == {}
+    assert _merged({"s": a}, {"s": b}, {}) == {"s": b}
 
 
 def test_a_lock_of_a_program_that_died_does_not_hold_for_ever(book, keeper, monkeypatch):

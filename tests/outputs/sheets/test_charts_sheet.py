@@ -70,6 +70,12 @@ def test_charts_draw_the_bins_of_their_forecast(run, book, charts):
         assert chart.x_axis.tickLblSkip == chart.x_axis.tickMarkSkip == figure.bins.step
 
 
+def test_axes_of_counts_and_densities_begin_at_0(charts):
+    histogram, other, overlay = charts[:3]
+    for chart in (histogram, other, overlay):
+        assert (chart.y_axis.scaling.min, chart.y_axis.scaling.max) == (0.0, None)
+
+
 @pytest.mark.parametrize(("first", "name", "above"), [(4, "area", False), (5, "area", True), (6, "difference", False)])
 def test_cumulative_charts_draw_exact_shares_and_shade_the_central_range(run, book, charts, first, name, above):
     inside, outside = charts[first].series

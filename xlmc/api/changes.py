@@ -32,7 +32,7 @@ class Changes:
         """The changes, as results say them."""
         from xlmc.analysis.results.statements.in_words import changes_text
 
-        return changes_text(self.scenario)
+        return changes_text(self.scenario, self.own.definitions)
 
     def named_in(self, run: RunResult) -> RunResult:
         """Return the run with the sentence that it is none of the workbook as it is."""

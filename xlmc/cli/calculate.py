@@ -13,7 +13,7 @@ import click
 
 from xlmc.cli.options import FilePath, functions_option, number_style_option
 from xlmc.cli.terminal import paragraph, plain, put, say, say_json
-from xlmc.errors import ErrorCode, capitalised
+from xlmc.errors import capitalised
 
 if TYPE_CHECKING:
     from xlmc.engine.calculation import Calculation
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from xlmc.excel.own_functions import OwnFunctions
     from xlmc.excel.workbook.typed_values import ValueRows
     from xlmc.excel.workbook.workbook import CellValue, Workbook
-    from xlmc.montecarlo.definitions.forms import Form
 
 __all__ = ["calculate"]
 
@@ -136,15 +135,17 @@ class _Answers:
     def shown(self) -> list[list[str]]:
         """Return the lines as people read them: numbers as the formats of their cells say."""
         from xlmc.montecarlo.definitions.forms import PLAIN
-        from xlmc.montecarlo.model.cell_forms import forms_of
+        from xlmc.montecarlo.model.cell_forms import content_in, forms_of
 
         forms = forms_of(self.book, self.wanted)
         if self.table is None or not self.table.headings:
             return [
-                [str(cell), _shown(self.value(cell, 0), form)] for cell, form in zip(self.wanted, forms, strict=True)
+                [str(cell), content_in(form, self.value(cell, 0))]
+                for cell, form in zip(self.wanted, forms, strict=True)
             ]
         given = [PLAIN] * len(self.table.headings)
-        return [[_shown(*each) for each in zip(line, [*given, *forms], strict=True)] for line in self.lines()]
+        known = [*given, *forms]
+        return [[content_in(*each) for each in zip(known, line, strict=True)] for line in self.lines()]
 
     def headings(self) -> list[str]:
         """Return the headings of these lines."""
@@ -257,17 +258,6 @@ def _print(answers: _Answers, *, as_json: bool, as_csv: bool) -> None:
     elif answers.wanted:
         headings = answers.headings()
         table(f"{answers.book.name}: values of cells", headings, answers.shown(), right=tuple(range(1, len(headings))))
-
-
-def _shown(value: CellValue, form: Form) -> str:
-    """Write a value as its cell shows it; a number of which the cell does not say what it is with twelve digits."""
-    from xlmc.montecarlo.definitions.stating import Kind
-    from xlmc.montecarlo.definitions.tables.table_rows import as_text
-    from xlmc.montecarlo.number_text import number_text
-
-    if isinstance(value, bool | ErrorCode) or not isinstance(value, int | float):
-        return as_text(value)
-    return number_text(float(value), 12) if form.kind is Kind.NUMBER else form.number(float(value))
 
 
 def _tell(answers: _Answers, book: Path, outputs: Sequence[Path]) -> None:

@@ -210,7 +210,7 @@ def scenario_table(definitions: Definitions) -> None:
     from xlmc.analysis.results.statements.in_words import changes_text
     from xlmc.cli.printing import table
 
-    changes = [(each.name, changes_text(each), each.note) for each in definitions.scenarios]
+    changes = [(each.name, changes_text(each, definitions), each.note) for each in definitions.scenarios]
     if changes:
         table("Scenarios", ("Name", "Changes", "Note"), changes)
 

@@ -69,7 +69,7 @@ def prepare_book(
     else:
         Target(target, "", overwrite, read=read).check()
     found = prepared(book, _areas(workbook, assumptions), _areas(workbook, forecasts), workbook)
-    _show(found)
+    _show(found, workbook)
     if not found.is_new:
         say(paragraph(f"{book} has all of this in its tables already: nothing was written."))
         return
@@ -104,15 +104,20 @@ def _areas(book: Workbook, places: Sequence[str]) -> list[Area] | None:
         raise WorkbookError(str(error.args[0])) from None
 
 
-def _show(found: Prepared) -> None:
+def _show(found: Prepared, workbook: Workbook) -> None:
     from xlmc.cli.printing import table
-    from xlmc.montecarlo.definitions.tables.table_rows import as_text
+    from xlmc.montecarlo.model.cell_forms import content_in, forms_of
     from xlmc.montecarlo.number_text import count_text
 
     for title, rows in (("Assumptions, frozen", found.found.assumptions), ("Forecasts", found.found.forecasts)):
         if not rows:
             continue
-        told = [(each.name, str(each.cell), as_text(each.value), each.units) for each in rows[:_MOST_TOLD]]  # type: ignore[arg-type]
+        shown = rows[:_MOST_TOLD]
+        forms = forms_of(workbook, [each.cell for each in shown])
+        told = [
+            (each.name, str(each.cell), content_in(form, each.value), each.units)
+            for each, form in zip(shown, forms, strict=True)
+        ]
         table(title, ("Name", "Cell", "Value", "Units"), told, right=(2,))
         if len(rows) > _MOST_TOLD:
             say(f"… and {count_text(len(rows) - _MOST_TOLD)} more.")

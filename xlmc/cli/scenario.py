@@ -76,11 +76,13 @@ def scenario(
 def _show(edited: EditedWorkbook, model: CompiledModel) -> None:
     """Print the cells with what they held and hold, and what could not be computed."""
     from xlmc.cli.printing import table
-    from xlmc.montecarlo.definitions.tables.table_rows import as_text
+    from xlmc.montecarlo.model.cell_forms import content_in, forms_of
     from xlmc.montecarlo.number_text import count_text
 
+    cells = list(edited.cells)
     rows = [
-        (str(cell), as_text(old) or "nothing", as_text(new) or "nothing") for cell, (old, new) in edited.cells.items()
+        (str(cell), *(content_in(form, each) or "nothing" for each in edited.cells[cell]))
+        for cell, form in zip(cells, forms_of(model.workbook, cells), strict=True)
     ]
     title = f"{model.workbook.name}: the cells of the scenario {edited.scenario.name!r}"
     if rows:

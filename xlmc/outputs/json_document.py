@@ -188,7 +188,7 @@ def scenario_json(each: ScenarioAnswers) -> Json:
     """Return the answers of a scenario, or of the workbook itself."""
     return {
         "name": None if each.scenario is None else each.scenario.name,
-        "changes": "" if each.scenario is None else changes_text(each.scenario),
+        "changes": "" if each.scenario is None else changes_text(each.scenario, each.run.model.definitions),
         "note": "" if each.scenario is None else each.scenario.note,
         "warnings": each.warnings,
         "paired": each.paired,

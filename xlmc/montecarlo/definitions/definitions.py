@@ -51,6 +51,13 @@ DIALOG: Final = "Crystal Ball"
 CUTOFFS: Final = {"lower_cutoff": "Lower cutoff", "upper_cutoff": "Upper cutoff"}
 """Key of a cutoff -> its heading."""
 
+_FIRST_DATE: Final = 10_000.0
+"""Days: from 1927 on. A smaller number in the row of a date is a span, such as its standard deviation."""
+
+_ENDS: Final = {"low", "high", "likeliest", "low_likeliest", "high_likeliest", "top", "bottom", "midpoint", *CUTOFFS}
+_OF_QUANTITY: Final = frozenset({*_ENDS, "mean", "std_dev", "location", "scale", "deductible", "limit"})
+"""Parameters that are in the unit of what is drawn; others, such as shapes and rates, are not."""
+
 
 @dataclass(frozen=True, slots=True)
 class StatedNumber:
@@ -59,16 +66,14 @@ class StatedNumber:
     Attributes:
         value: at the base case; None where it is not known.
         source: the formula, or its cell.
-        form: how the number is written.
     """
 
     value: float | None
     source: str
-    form: Form = PLAIN
 
-    def __str__(self) -> str:
+    def written(self, form: Form) -> str:
         """Write the number with its source."""
-        return self.source if self.value is None else f"{self.form.number(self.value)} ({self.source})"
+        return self.source if self.value is None else f"{form.number(self.value)} ({self.source})"
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,6 +120,7 @@ class Assumption:
         checked: how it is drawn by the numbers that the row held as it was read, which are a distribution; None if
             one was not known then. A run checks all numbers that are not these, whoever gives them.
         stated: key of a parameter or cutoff that a formula computes -> its value at the base case, and the formula.
+        form: how the values of its cell are written.
         uncertain: it varies from lack of knowledge: it has one value, which nobody knows. Others vary by scatter.
         stream: the name that its random numbers are drawn by, where that is another: of a draw in a cell the call,
             `Sheet!B7#1`, so that its label may change. People may call the assumption by it, too.
@@ -135,6 +141,7 @@ class Assumption:
     call: InFormula | None = None
     checked: Draw | None = field(default=None, compare=False, repr=False)
     stated: Mapping[str, StatedNumber] = field(default_factory=dict, compare=False, repr=False)
+    form: Form = field(default=PLAIN, compare=False, repr=False)
     uncertain: bool = False
     stream: str = ""
 
@@ -174,6 +181,23 @@ class Assumption:
         given = {key: value for key, value in {**self.given, **numbers}.items() if value is not None}
         stated = {key: text for key, text in self.stated.items() if key not in numbers}
         return replace(self, given=given, stated=stated)
+
+    def text_of(self, key: str) -> str:
+        """Write a parameter or cutoff that is given, with its formula where one computes it."""
+        value, stated = self.given[key], self.stated.get(key)
+        if stated is not None:
+            return stated.written(PLAIN if stated.value is None else self.form_of(key, stated.value))
+        return str(value) if isinstance(value, Cell) else self.form_of(key, value).number(value)
+
+    def form_of(self, key: str, value: float) -> Form:
+        """Return how a number is written: as its cell where it is a value of the quantity itself, or a distance of
+        such; of dates where it is a value alone.
+        """
+        if self.form.kind is Kind.DATE:
+            own = value >= _FIRST_DATE
+        else:
+            own = key in _OF_QUANTITY or (key[:1] == "p" and key[1:2].isdigit())
+        return self.form if own else PLAIN
 
     @property
     def cells(self) -> tuple[Cell, ...]:
@@ -227,6 +251,7 @@ class Filter:
         only_for: names of the forecasts that it discards trials for; empty where it rejects them for all.
         used: whether the row counts; its column `Use` may switch it off.
         stated: key of a limit that a formula computes -> its value at the base case, and the formula.
+        form: how the values of its cell are written.
     """
 
     name: str
@@ -248,6 +273,14 @@ class Filter:
         return True
 
     stated: Mapping[str, StatedNumber] = field(default_factory=dict, compare=False, repr=False)
+    form: Form = field(default=PLAIN, compare=False, repr=False)
+
+    def text_of(self, key: str) -> str:
+        """Write a limit that it has, with its formula where one computes it."""
+        value, stated = getattr(self, key), self.stated.get(key)
+        if stated is not None:
+            return stated.written(self.form)
+        return str(value) if isinstance(value, Cell) else self.form.number(value)
 
     @property
     def formulas(self) -> dict[str, Cell]:

@@ -13,7 +13,7 @@ from xlmc.excel.address import Area, Cell, column_letters
 from xlmc.excel.formula import Graph, Resolver, build_graph
 from xlmc.excel.formula.precedents import references
 from xlmc.excel.workbook.labels import is_year, label_of
-from xlmc.excel.workbook.workbook import CellContent, Workbook
+from xlmc.excel.workbook.workbook import CellContent, CellValue, Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.distributions.spelling import name_key
 
@@ -40,7 +40,7 @@ class Proposal:
     cell: Cell
     name: str
     units: str
-    value: object
+    value: CellValue
 
 
 @dataclass(frozen=True, slots=True)

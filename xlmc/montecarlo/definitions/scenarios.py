@@ -12,6 +12,7 @@ from dataclasses import dataclass, field
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import CellValue
 from xlmc.montecarlo.definitions.distribution import Distribution
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 
 __all__ = [
     "Band",
@@ -143,6 +144,7 @@ class Typed:
     Attributes:
         named: what a person calls the cell; empty for its address.
         of: the kind of the table that it is a cell of, the name of its row and its heading; None for other cells.
+        form: how the values of the cell are written.
     """
 
     cell: Cell
@@ -150,6 +152,7 @@ class Typed:
     where: Cell | None = None
     named: str = ""
     of: tuple[str, str, str] | None = field(default=None, compare=False)
+    form: Form = field(default=PLAIN, compare=False, repr=False)
 
 
 @dataclass(frozen=True, slots=True)

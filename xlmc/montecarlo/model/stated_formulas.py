@@ -1,15 +1,17 @@
-"""Numbers of definitions that formulas compute, as people read them: `180,000 (=Estimate!B2)`, at the base case."""
+"""Numbers of definitions as people read them: in the form of their cells, and those that formulas compute with the
+formula: `180,000 (=Estimate!B2)`, at the base case.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import Final, TypeVar
 
 from xlmc.excel.address import Cell, host_of
 from xlmc.excel.workbook.workbook import Workbook
-from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, StatedNumber
-from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter, StatedNumber
+from xlmc.montecarlo.definitions.scenarios import Scenario, Typed
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.cell_forms import forms_of
 
@@ -18,14 +20,8 @@ __all__ = ["with_stated_formulas"]
 _LONGEST: Final = 40
 """Characters of a formula; a longer one is named by its cell."""
 
-_FIRST_DATE: Final = 10_000.0
-"""Days: from 1927 on. A smaller number in the row of a date is a span, such as its standard deviation."""
-
-_ENDS: Final = {"low", "high", "likeliest", "low_likeliest", "high_likeliest", "top", "bottom", "midpoint", *CUTOFFS}
-_OF_QUANTITY: Final = frozenset({*_ENDS, "mean", "std_dev", "location", "scale", "deductible", "limit"})
-"""Parameters that are in the unit of what is drawn; others, such as shapes and rates, are not."""
-
 Values = Callable[[Sequence[Cell]], Mapping[Cell, float]]
+R = TypeVar("R", Assumption, Filter)
 
 
 def with_stated_formulas(
@@ -75,40 +71,42 @@ def _assumption(
     workbook: Workbook, assumption: Assumption, read: Mapping[str, Cell], known: Mapping[Cell, float]
 ) -> Assumption:
     stated = {}
-    computed = {**read, **assumption.formulas}
-    (form,) = forms_of(workbook, [host_of(assumption.cell)]) if computed else (PLAIN,)
-    for key, cell in computed.items():
+    for key, cell in {**read, **assumption.formulas}.items():
         number = assumption.given.get(key)
         value = known.get(cell) if isinstance(number, Cell) or number is None else number
-        own = value is not None and form.kind is not Kind.NUMBER and _is_of_quantity(key, value, form)
-        stated[key] = _stated(workbook, cell, value, form if own else PLAIN)
+        stated[key] = _stated(workbook, cell, value)
     return replace(assumption, stated={**assumption.stated, **stated}) if stated else assumption
 
 
 def _in_their_forms(workbook: Workbook, definitions: Definitions) -> Definitions:
-    """Return the definitions with the numbers of assumptions whose cells show dates, percentages or money as such."""
-    asked = definitions.assumptions
-    forms = zip(asked, forms_of(workbook, [host_of(each.cell) for each in asked]), strict=True)
-    written = {each.name: _written(each, form) for each, form in forms if form.kind is not Kind.NUMBER}
-    if not written:
+    """Return the definitions with the forms of the cells that show dates, percentages or money."""
+    limits = (*definitions.filters, *definitions.forecast_filters)
+    rows: list[Assumption | Filter] = [*definitions.assumptions, *limits]
+    typed = [change.cell for each in definitions.scenarios for change in each.changes if isinstance(change, Typed)]
+    cells = [*dict.fromkeys([*(host_of(each.cell) for each in rows), *typed])]
+    forms = dict(zip(cells, forms_of(workbook, cells), strict=True))
+    known = {cell: form for cell, form in forms.items() if form.kind is not Kind.NUMBER}
+    if not known:
         return definitions
-    return replace(definitions, assumptions=tuple(replace(a, stated=written.get(a.name, a.stated)) for a in asked))
 
+    def scenario(each: Scenario) -> Scenario:
+        changes = (
+            replace(change, form=known[change.cell]) if isinstance(change, Typed) and change.cell in known else change
+            for change in each.changes
+        )
+        return replace(each, changes=tuple(changes))
 
-def _written(assumption: Assumption, form: Form) -> dict[str, StatedNumber]:
-    """Return the numbers of an assumption that are values of its quantity, in the form of its cell."""
-    return {
-        key: StatedNumber(None, form.number(value))
-        for key, value in assumption.given.items()
-        if not isinstance(value, Cell) and _is_of_quantity(key, value, form)
-    }
+    def row(each: R) -> R:
+        form = known.get(host_of(each.cell))
+        return each if form is None else replace(each, form=form)
 
-
-def _is_of_quantity(key: str, value: float, form: Form) -> bool:
-    """Whether a number is a value of the quantity itself, or a distance of such; of dates a value alone."""
-    if form.kind is Kind.DATE:
-        return value >= _FIRST_DATE
-    return key in _OF_QUANTITY or (key[:1] == "p" and key[1:2].isdigit())
+    return replace(
+        definitions,
+        assumptions=tuple(map(row, definitions.assumptions)),
+        filters=tuple(map(row, definitions.filters)),
+        forecast_filters=tuple(map(row, definitions.forecast_filters)),
+        scenarios=tuple(map(scenario, definitions.scenarios)),
+    )
 
 
 def _filter(workbook: Workbook, filter_: Filter, known: Mapping[Cell, float]) -> Filter:
@@ -116,8 +114,8 @@ def _filter(workbook: Workbook, filter_: Filter, known: Mapping[Cell, float]) ->
     return replace(filter_, stated=stated) if stated else filter_
 
 
-def _stated(workbook: Workbook, cell: Cell, value: float | None, form: Form = PLAIN) -> StatedNumber:
+def _stated(workbook: Workbook, cell: Cell, value: float | None) -> StatedNumber:
     formula = workbook.content(cell).formula
     text = "" if formula is None else f"={formula.text}"
     whole = text if "!" in text or "[" in text else f"{cell}: {text}"
-    return StatedNumber(value, whole if 0 < len(text) <= _LONGEST else str(cell), form)
+    return StatedNumber(value, whole if 0 < len(text) <= _LONGEST else str(cell))

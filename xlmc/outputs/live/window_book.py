@@ -138,7 +138,9 @@ def _assumption(
 def _number(assumption: Assumption, key: str, heading: str, before: Parameter) -> dict[str, Any]:
     value = assumption.given.get(key)
     drags = assumption.data is None and (key in _ON_AXIS or (key[:1] == "p" and key[1:2].isdigit()))
-    return _handle(key, heading, value, before, drags=drags, cell=str(assumption.stated.get(key, "")))
+    return _handle(
+        key, heading, value, before, drags=drags, cell=assumption.text_of(key) if key in assumption.stated else ""
+    )
 
 
 def _handle(
@@ -405,7 +407,7 @@ def scenario_rows(definitions: Definitions, stored: Mapping[str, Adjustments]) -
     for scenario in definitions.scenarios:
         if scenario.name not in stored:
             shows = adjustments_of(definitions, scenario) is not None
-            yield {"name": scenario.name, "changes": [changes_text(scenario)], "own": True, "shows": shows}
+            yield {"name": scenario.name, "changes": [changes_text(scenario, definitions)], "own": True, "shows": shows}
     for name, each in stored.items():
         yield {"name": name, "changes": in_words(definitions, each), "own": False, "shows": True}
 

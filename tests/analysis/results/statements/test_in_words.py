@@ -15,7 +15,7 @@ from xlmc.analysis.results.statements.in_words import (
     status,
 )
 from xlmc.excel.address import Area, Cell
-from xlmc.montecarlo.definitions.definitions import Assumption, DataRange, Filter
+from xlmc.montecarlo.definitions.definitions import Assumption, DataRange, Definitions, Filter
 from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.scenarios import (
     Band,
@@ -138,12 +138,12 @@ DRAG = Cell("Inputs", 28, 4)
     ],
 )
 def test_what_a_scenario_changes(change, text):
-    assert changes_text(Scenario("s", (change,))) == text
+    assert changes_text(Scenario("s", (change,)), Definitions()) == text
 
 
 def test_several_changes_and_none():
-    assert changes_text(Scenario("s", (Drawn("a"), Frozen("b", 1.0)))) == "a drawn; b = 1"
-    assert changes_text(Scenario("s", ())) == "nothing"
+    assert changes_text(Scenario("s", (Drawn("a"), Frozen("b", 1.0))), Definitions()) == "a drawn; b = 1"
+    assert changes_text(Scenario("s", ()), Definitions()) == "nothing"
 
 
 @pytest.mark.parametrize(

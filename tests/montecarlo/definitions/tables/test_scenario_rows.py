@@ -6,6 +6,7 @@ import pytest
 
 from xlmc.analysis.results.statements.in_words import changes_text
 from xlmc.excel.address import parse_address
+from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.scenarios import Band, Drawn, Frozen, Limits, Numbers, Range, Typed
 
 TABLE = {"xlmc_scenarios": "Scenarios!A1:C2"}
@@ -72,7 +73,7 @@ def test_what_a_heading_and_a_cell_mean(changes_of, subtests):
                 assert [getattr(found, name) for name in expected.__slots__ if name != "where"] == [
                     getattr(expected, name) for name in expected.__slots__ if name != "where"
                 ]
-            assert changes_text(scenario) == words
+            assert changes_text(scenario, Definitions()) == words
 
 
 def test_a_table_without_the_column_still_takes_numbers(read, blocks):

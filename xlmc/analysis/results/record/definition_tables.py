@@ -22,7 +22,7 @@ from xlmc.analysis.results.statements.in_words import (
 )
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.stating import Role
-from xlmc.montecarlo.definitions.tables.table_rows import as_text
+from xlmc.montecarlo.model.cell_forms import content_in, forms_of
 from xlmc.montecarlo.model.correlating import CHANGED, drawn_correlation
 from xlmc.montecarlo.statistics import Estimate, rank_correlation
 from xlmc.montecarlo.statistics.estimate import finite
@@ -256,10 +256,11 @@ def check_section(simulation: RunResult) -> Section:
 
 def decision_section(simulation: RunResult) -> Section:
     """Every decision, with what its cell holds in this run."""
-    workbook = simulation.model.workbook
+    workbook, decisions = simulation.model.workbook, simulation.model.definitions.decisions
+    forms = forms_of(workbook, [each.cell for each in decisions])
     rows = tuple(
-        (each.name, str(each.cell), as_text(workbook.content(each.cell).value), each.units, each.values_text)
-        for each in simulation.model.definitions.decisions
+        (each.name, str(each.cell), content_in(form, workbook.content(each.cell).value), each.units, each.values_text)
+        for each, form in zip(decisions, forms, strict=True)
     )
     return Section("decisions", "Decisions", table=RecordTable(_DECISION, rows))
 

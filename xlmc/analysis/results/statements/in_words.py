@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.excel.address import Cell
-from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, DataRange, Filter, Parameter
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, DataRange, Definitions, Filter, Parameter
 from xlmc.montecarlo.definitions.evidence import ERRORS, SIZES, Evidence, Within
+from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Change,
@@ -26,8 +27,9 @@ from xlmc.montecarlo.definitions.scenarios import (
     Tabulated,
     Typed,
 )
-from xlmc.montecarlo.definitions.tables.table_rows import as_text
 from xlmc.montecarlo.distributions.parameters import show
+from xlmc.montecarlo.distributions.spelling import name_key, plain
+from xlmc.montecarlo.model.cell_forms import content_in
 from xlmc.montecarlo.number_text import count_text, exact_text, styled_text
 from xlmc.montecarlo.sampling.sampling_methods import GENERATOR, METHODS
 from xlmc.montecarlo.statistics import Estimate, proportion
@@ -59,6 +61,9 @@ __all__ = [
 ]
 
 
+_VALUE: Final = "low"
+"""The key of a number that is a value of the quantity itself."""
+
 UNWEIGHTED: Final = (
     "Weighted results leave out what needs trials of equal weight: what the answers depend on, filter limits, "
     "forecasts two at a time, ranges of your own on the sheet Certainty, and rank correlations of accepted trials."
@@ -87,7 +92,7 @@ def parameters_text(assumption: Assumption) -> str:
     parts = []
     for key, heading in assumption.headings.items():
         if key not in CUTOFFS:
-            parts.append(f"{heading} {assumption.stated.get(key) or given_text(assumption.given[key])}")
+            parts.append(f"{heading} {assumption.text_of(key)}")
     if assumption.data is not None:
         parts.append(_data_text(assumption.data))
     return ", ".join(parts)
@@ -102,8 +107,7 @@ def _data_text(data: DataRange) -> str:
 def cutoffs_text(assumption: Assumption) -> str:
     """`below 0.5, above 0.9`: what is cut off; empty where nothing is."""
     sides = {"lower_cutoff": "below", "upper_cutoff": "above"}
-    stated = assumption.stated
-    return ", ".join(f"{sides[key]} {stated.get(key) or given_text(end)}" for key, end in assumption.cutoffs.items())
+    return ", ".join(f"{sides[key]} {assumption.text_of(key)}" for key in assumption.cutoffs)
 
 
 def distribution_text(assumption: Assumption) -> str:
@@ -122,17 +126,8 @@ def limits_text(filter_: Filter) -> str:
         return "not used: Use is off"
     if filter_.evidence is not None:
         return evidence_text(filter_.evidence)
-    limits = (
-        ("at_least", filter_.at_least),
-        ("above", filter_.above),
-        ("at_most", filter_.at_most),
-        ("below", filter_.below),
-    )
-    said = [
-        f"{key.replace('_', ' ')} {filter_.stated.get(key) or given_text(bound)}"
-        for key, bound in limits
-        if bound is not None
-    ]
+    limits = ("at_least", "above", "at_most", "below")
+    said = [f"{key.replace('_', ' ')} {filter_.text_of(key)}" for key in limits if getattr(filter_, key) is not None]
     return " and ".join(said) or "TRUE"
 
 
@@ -172,45 +167,73 @@ def evidence_text(evidence: Evidence) -> str:
     return f"reads {given_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{ends_text}{weights}"
 
 
-def changes_text(scenario: Scenario) -> str:
-    """Say what a scenario changes: `Friction from 0.6 to 0.8; Restitution at most 0.5; Inputs!D28 = -20`."""
-    return "; ".join(map(_change_text, scenario.changes)) or "nothing"
+def changes_text(scenario: Scenario, definitions: Definitions) -> str:
+    """Say what a scenario changes: `Friction from 0.6 to 0.8; Restitution at most 0.5; Inputs!D28 = -20`.
+
+    Args:
+        scenario: the changes.
+        definitions: of the workbook, whose assumptions and filters say how their numbers are written.
+    """
+    return "; ".join(_change_text(each, definitions) for each in scenario.changes) or "nothing"
 
 
-def _change_text(change: Change) -> str:
+def _change_text(change: Change, definitions: Definitions) -> str:
     match change:
-        case Frozen(name, None):
-            return f"{name} frozen"
         case Frozen(name, value):
-            return f"{name} = {_plain_number(value)}"
+            return f"{name} {'frozen' if value is None else f'= {_number_of(definitions, name, _VALUE, value)}'}"
         case Drawn(name):
             return f"{name} drawn"
         case Range(name, low, high):
             ends = [("from", low), ("to", high)] if None not in (low, high) else [("at least", low), ("at most", high)]
-            return " ".join([name, *(f"{word} {_plain_number(end)}" for word, end in ends if end is not None)])
+            found = (f"{word} {_number_of(definitions, name, _VALUE, end)}" for word, end in ends if end is not None)
+            return " ".join([name, *found])
         case Band(name, low, high):
             return f"{name} from P{show(low)} to P{show(high)}"
         case Numbers(name, values) | Limits(name, values) | Measured(name, values) | Stated(name, values):
             words = (
-                f"{key.replace('_', ' ')} {_plain_number(value)}" for key, value in values.items() if value is not None
+                f"{key.replace('_', ' ')} {_number_of(definitions, name, key, value)}"
+                for key, value in values.items()
+                if value is not None
             )
             return f"{name} {' and '.join(words) or 'without ' + ', '.join(key.replace('_', ' ') for key in values)}"
         case Switched(name, used):
             return f"{name} {'used' if used else 'not used'}"
         case Correlated(first, second, value):
-            return f"correlation of {first} and {second} {_plain_number(value)}"
+            return f"correlation of {first} and {second} {given_text(value)}"
         case Redrawn(name, distribution):
             return f"{name} {distribution!r}"
         case Tabulated(number, values):
             return f"value {number} of RiskSimtable: {values}"
-        case Typed(cell, value, _, named):
-            return (
-                f"{named or cell} = {_plain_number(value) if isinstance(value, float) else as_text(value) or 'nothing'}"
-            )
+        case Typed(cell, value, _, named, of, form):
+            if of is not None and isinstance(value, float):
+                return f"{named} = {_number_in_row(definitions, *of, value)}"
+            return f"{named or cell} = {content_in(form, value) or 'nothing'}"
 
 
-def _plain_number(value: float | None) -> str:
-    return "" if value is None else given_text(value)
+def _number_in_row(definitions: Definitions, kind: str, name: str, heading: str, value: float) -> str:
+    """Write a number of a table's row, such as the High of an assumption or a limit of a filter."""
+    key = _VALUE if plain(heading) == "value" else ""
+    rows: Mapping[str, Sequence[Assumption | Filter]] = {
+        "xlmc_assumptions": definitions.assumptions,
+        "xlmc_filters": definitions.filters,
+    }
+    row = next((each for each in rows.get(kind, ()) if name_key(each.name) == name), None)
+    if isinstance(row, Assumption):
+        headings = {spec.key: spec.headings for spec in row.family.parameters}
+        headings |= {key: (written,) for key, written in CUTOFFS.items()}
+        key = next((each for each, those in headings.items() if plain(heading) in map(plain, those)), key)
+    return given_text(value) if row is None else _form_in(row, key, value).number(value)
+
+
+def _number_of(definitions: Definitions, name: str, key: str, value: float) -> str:
+    """Write a number of an assumption or a filter: a parameter or a limit by its key."""
+    rows: tuple[Assumption | Filter, ...] = (*definitions.assumptions, *definitions.filters)
+    row = next((each for each in (*rows, *definitions.forecast_filters) if each.name == name), None)
+    return given_text(value) if row is None else _form_in(row, key, value).number(value)
+
+
+def _form_in(row: Assumption | Filter, key: str, value: float) -> Form:
+    return row.form_of(key, value) if isinstance(row, Assumption) else row.form
 
 
 def notes_text(notes: Mapping[str, str]) -> str:

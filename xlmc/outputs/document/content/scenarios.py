@@ -73,7 +73,7 @@ def _changes(each: ScenarioAnswers) -> str:
     if each.scenario is None:
         return NONE
     note = f" ({each.scenario.note})" if each.scenario.note else ""
-    return f"{changes_text(each.scenario)}{note}"
+    return f"{changes_text(each.scenario, each.run.model.definitions)}{note}"
 
 
 def answer_heads(found: Sequence[ScenarioAnswers], index: int) -> tuple[str, ...]:

@@ -38,15 +38,21 @@ FACTORS = (1.0, 100.0, 24.0, 1440.0, 86_400.0)
 DECISIONS = [
     ["Name", "Cell", "Low", "High", "Step", "Values", "Units"],
     ["Order", "=Model!B30", 20, 40, 20, None, "pieces"],
-    ["Price", "=Model!B31", None, None, None, "5; 6", "$"],
+    ["Price", "=Model!B31", None, None, None, "5; 6", None],
 ]
-SCENARIOS = [["Name", "Speed in High", "Cost in High"], ["slower", 37, None], ["dearer", None, 300_000]]
+SCENARIOS = [
+    ["Name", "Speed in High", "Cost in High", "Model!B31", "Share in", "Limit"],
+    ["slower", 37, None, None, None, None],
+    ["dearer", None, 300_000, 5.5, "0.35 to 0.45", None],
+    ["known", None, None, None, 0.45, "at most 38"],
+    ["cheap", None, None, 4, None, None],
+]
 
 NOT_OF_THE_RUN = {
     *("Model", "Tables", "More"),  # of the book itself
     "Trials",  # each of them
     "Certainty",  # ranges that a reader types
-    *("Bins", "Curves", "Numbers"),  # what charts draw
+    *("Bins", "Curves", "Numbers", "Chart data"),  # what charts draw
     "Record",  # settings
     "Lost to errors in cells",  # the bound of a share that JSON gives as a count
 }
@@ -61,9 +67,12 @@ def write_full_book(path, *, filtered):
     sheet["B10"], sheet["B11"] = "=B1^2/10*(1+B30/1000)", "=B2*(1+B1/100)-B30*B31*100"
     sheet["B6"].number_format, sheet["B7"].number_format = "yyyy-mm-dd", "0.0%"  # assumptions that are no bare numbers
     sheet["B2"].number_format = '"$"#,##0'
+    sheet["B31"].number_format = '"$"#,##0.00'
+    book["Tables"]["A7"] = "Share in"  # not as the name of a cell's heading
     for number in range(40):
         sheet.cell(number + 1, 8, round(20 + 5 * math.sin(number * 1.7), 3))
-    add_tables(book.create_sheet("More"), {"xlmc_decisions": DECISIONS, "xlmc_scenarios": SCENARIOS})
+    scenarios = [row[:5] + row[5:] * filtered for row in SCENARIOS]
+    add_tables(book.create_sheet("More"), {"xlmc_decisions": DECISIONS, "xlmc_scenarios": scenarios})
     book.save(path)
     return str(path)
 
@@ -82,7 +91,7 @@ COMMANDS = {
         "--inner",
         "50",
         "--uncertain",
-        "Cost in,Start,Share",
+        "Cost in,Start,Share in",
     ],
     "stress": ["stress", "{filtered}", "-n", "2000"],
     "seek": ["seek", "{filtered}", "--cell", "Model!B11", "--to", "250000", "--by", "Model!B1"],
@@ -159,8 +168,9 @@ def text_of(path):
 def estimates_in(value):
     """Yield the value and the error of each estimate in a document."""
     if isinstance(value, dict):
-        if isinstance(value.get("value"), int | float) and isinstance(value.get("error"), int | float):
-            yield float(value["value"]), float(value["error"])
+        found = value.get("value", value.get("rms"))  # root mean squares of `methods` have errors, too
+        if isinstance(found, int | float) and isinstance(value.get("error"), int | float):
+            yield float(found), float(value["error"])
         for name, error in value.get("standard_errors", {}).items():
             yield value["parameters"][name], float("nan") if error is None else error
         for each in value.values():
@@ -217,7 +227,7 @@ def told(text):
 
 
 @pytest.mark.parametrize("output", ["terminal", "html", "pdf", "docx"])
-@pytest.mark.parametrize("command", [each for each in COMMANDS if each != "methods"])  # errors in % of ranges
+@pytest.mark.parametrize("command", list(COMMANDS))  # errors in % of ranges
 def test_a_number_with_its_error_is_an_estimate_of_the_json(printed, command, output):
     document, texts, _ = printed(command)
     known = np.array(list(estimates_in(document))).reshape(-1, 2)
@@ -262,6 +272,11 @@ def derived(document):
     """Yield the numbers of sheets that follow from those of the JSON."""
     best = min((each["aic"] for each in document.get("fits", ())), default=0.0)
     yield from (each["aic"] - best for each in document.get("fits", ()))
+    if "methods" in document:
+        share = document["reference"]["acceptance"]["value"]
+        runs = [each for method in document["methods"] for each in method["runs"]]
+        yield from (each["acceptance_error"] / share for each in runs if each["acceptance_error"] is not None)
+        yield document["reference"]["acceptance"]["error"] / share
     if "sensitivity" not in document:
         return
     for each in document["sensitivity"]["forecasts"]:
@@ -283,7 +298,7 @@ def is_close(number, known, half):
     return at[0] < at[1]
 
 
-@pytest.mark.parametrize("command", [each for each in COMMANDS if each != "methods"])
+@pytest.mark.parametrize("command", list(COMMANDS))
 def test_a_number_on_a_sheet_is_a_number_of_the_json(printed, command):
     """Those of result sheets to the last bits, those of studies, which are texts made numbers, to their digits."""
     document, _, path = printed(command)
@@ -316,7 +331,7 @@ def test_an_assumption_that_is_a_date_is_told_as_one(printed):
 
 def test_assumptions_that_are_percentages_and_money_are_told_as_such(printed):
     document, texts, path = printed("simulate")
-    share = next(each for each in document["assumptions"] if each["name"] == "Share")
+    share = next(each for each in document["assumptions"] if each["name"] == "Share in")
     assert share["parameters"] == "Low 30 %, High 50 %"
     for text in (*texts.values(), xlmc_check(path.parent / "filtered.xlsx")):
         assert not re.search(r"Low 0\.3\b", text)
@@ -326,7 +341,7 @@ def test_assumptions_that_are_percentages_and_money_are_told_as_such(printed):
     (row,) = [
         [cell.number_format for cell in row]
         for row in openpyxl.load_workbook(path)["Sensitivity"].iter_rows()
-        if row[0].value == "Share" and row[2].value == 0.4
+        if row[0].value == "Share in" and row[2].value == 0.4
     ][:1]
     assert "%" in row[2]
 
@@ -342,6 +357,96 @@ def test_calculated_cells_are_told_in_their_formats(printed):
     assert shown["Model!B13"].strip() == f"{100 * exact['Model!B13']:.6g} %".replace(".", ",")
     assert shown["Model!B11"].strip() == f"${exact['Model!B11']:,.0f}".replace(",", ".")
     assert "e+" not in found.output
+
+
+def printed_by(*words):
+    """What a command prints on a wide terminal, in lines whose columns stand one space apart."""
+    found = CliRunner().invoke(xlmc, list(map(str, words)), env={"COLUMNS": "200"})
+    assert found.exit_code in (0, 1), found.output
+    return "\n".join(re.sub(r" {2,}", " ", line).strip() for line in found.output.splitlines())
+
+
+def test_check_says_of_definitions_what_the_json_of_a_run_says(printed):
+    document, _, path = printed("simulate")
+    told = printed_by("check", path.parent / "filtered.xlsx")
+    for each in document["assumptions"]:
+        assert f"{each['distribution']}: {each['parameters']}" in told
+    for each in (*document["filters"], *document["scenarios"][1:]):
+        assert f"{each['name']} {each.get('changes', '')}" in told
+        assert each.get("limits", "") in told
+    changes = {each["name"]: each["changes"] for each in document["scenarios"]}
+    assert changes["dearer"] == "Cost in High = $300,000; Model!B31 = $5.50; Share in from 35 % to 45 %"
+    assert changes["known"] == "Share in = 45 %; Limit at most 38"
+    assert "Order Model!B30 pieces 20; 40" in told
+    assert "Price Model!B31 $5; $6" in told
+
+
+def test_scenario_shows_cells_in_their_formats(printed):
+    told = printed_by("scenario", printed("simulate")[2].parent / "filtered.xlsx", "cheap")
+    assert "Model!B31 $5 $4" in told
+
+
+def test_limits_of_filters_are_written_as_their_cells(tmp_path):
+    book = openpyxl.load_workbook(write_full_book(tmp_path / "book.xlsx", filtered=True))
+    limits = [["Name", "Cell", "At least"], ["Late", "=Model!B12", 46_100], ["Share", "=Model!B13", 0.28]]
+    limits += [["Dear", "=Model!B11", "=Model!B3*1.2"]]
+    del book["Tables"].tables["xlmc_filters"], book["More"].tables["xlmc_scenarios"]
+    add_tables(book.create_sheet("Limits"), {"xlmc_filters": limits})
+    book.save(tmp_path / "book.xlsx")
+    told = printed_by("check", tmp_path / "book.xlsx")
+    assert "at least 2026-03-19" in told
+    assert "at least 28 %" in told
+    assert "at least $216,000 (=Model!B3*1.2)" in told
+
+
+def test_prepare_shows_cells_in_their_formats(tmp_path):
+    book = openpyxl.load_workbook(write_full_book(tmp_path / "book.xlsx", filtered=False))
+    for name in ("Tables", "More"):
+        del book[name]
+    book.save(tmp_path / "book.xlsx")
+    told = printed_by("prepare", tmp_path / "book.xlsx", "--assumption", "Model!B1:B7", "--number-style", "1.234,5")
+    for cell, shown in {"B2": "$200.000", "B4": "2e-09", "B5": "3", "B6": "2026-03-01", "B7": "40 %"}.items():
+        assert f" Model!{cell} {shown}" in told
+
+
+def test_replay_tells_numbers_that_its_json_has(printed):
+    _, _, path = printed("simulate")
+    book = openpyxl.load_workbook(path)
+    edited = {}
+    for sheet, row in (("Results", 12), ("Statistics", 8)):
+        cells = [cell for line in book[sheet].iter_rows(min_row=row) for cell in line]
+        cell = next(cell for cell in cells if isinstance(cell.value, float) and cell.value % 1.0)
+        cell.value = edited[f"{sheet}!{cell.coordinate}"] = round(1.5 * cell.value, 3)
+    changed = path.with_name("changed.xlsx")
+    book.save(changed)
+    told = printed_by("replay", changed, "--quiet")
+    found = CliRunner().invoke(xlmc, ["replay", str(changed), "--quiet", "--json"])
+    differences = json.loads(found.output)["result_sheets"]["differences"]
+    assert edited.items() <= {each["where"]: each["says"] for each in differences}.items()
+    for each in (each for each in differences[:20] if isinstance(each["says"], float)):  # others openpyxl has changed
+        assert f"{each['where']} says {each['says']!r}, the run gives {each['gives']!r}" in told
+
+
+def test_convert_counts_the_rows_that_its_tables_have(tmp_path):
+    book = openpyxl.Workbook()
+    sheet = book.active
+    for row, call in enumerate(("RiskUniform(1E-9,3E-9)", "RiskNormal(1E12,1E11)", "RiskUniform(0.3,0.5)"), 1):
+        sheet.cell(row, 1, f"name {row}")
+        sheet.cell(row, 2, f"={call}").number_format = "0.0%" if row == 3 else "General"
+    sheet["A4"], sheet["B4"] = "answer", "=RiskOutput()+B1*B2*B3"
+    book.save(tmp_path / "calls.xlsx")
+    told = printed_by("convert", tmp_path / "calls.xlsx", "-o", tmp_path / "tables.xlsx")
+    converted = openpyxl.load_workbook(tmp_path / "tables.xlsx")
+    tables = {name: ref for each in converted for name, ref in each.tables.items()}
+    for kind, rows in (("xlmc_assumptions", 3), ("xlmc_forecasts", 1)):
+        assert f"{kind} {rows}" in told
+        first, last = (int(re.sub(r"\D", "", end)) for end in tables[kind].split(":"))
+        assert last - first == rows
+    for book in ("calls.xlsx", "tables.xlsx"):
+        found = printed_by("check", tmp_path / book)
+        assert "Low 1e-09, High 3e-09" in found
+        assert "Mean 1,000,000,000,000, Std dev 100,000,000,000" in found
+        assert "Low 30 %, High 50 %" in found
 
 
 def xlmc_check(book):

@@ -51,9 +51,10 @@ def check(
     from xlmc.montecarlo.model.labels import calculate_labels
     from xlmc.montecarlo.model.loading import filter_faults
     from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.model.stated_formulas import in_their_forms
 
     workbook = calculate_labels(read_workbook(book, functions=functions))
-    definitions = read_definitions(workbook, ENGINES)
+    definitions = in_their_forms(workbook, read_definitions(workbook, ENGINES))
     use_number_style(definitions.settings.number_style)
     problems: list[XlmcError] = list(definitions.problems)
     model: CompiledModel | None = None

@@ -389,7 +389,7 @@ class Outputs(NamedTuple):
         Where a name was taken since the run began, or a program holds the file, a free name beside it is used.
         """
         from xlmc.api import Simulation
-        from xlmc.montecarlo.number_text import count_text
+        from xlmc.montecarlo.number_text import count_text, counted_text
 
         written, lines = True, []
         for path, label, write in self._files(Simulation(run)):
@@ -399,7 +399,8 @@ class Outputs(NamedTuple):
             else:
                 lines.append(f"{label} {found}")
         if run.kept_inputs < run.accepted:
-            kept = f"the draws of {count_text(run.kept_inputs)} of {count_text(run.accepted)} accepted trials were kept"
+            every = counted_text(run.accepted, "accepted trial")
+            kept = f"the draws of {count_text(run.kept_inputs)} of {every} were kept"
             for path in self.trials:
                 say(f"note: {path}: {kept}; the others are blank", err=True)
         return written, lines

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from xlmc.cli.options import FilePath, functions_option
+from xlmc.cli.options import FilePath, functions_option, number_style_option
 from xlmc.cli.terminal import paragraph, say
 
 if TYPE_CHECKING:
@@ -29,6 +29,7 @@ _MOST_TOLD: Final = 40
 @click.option("-o", "--output", type=FilePath(), help="The copy.  [default: BOOK-prepared.xlsx]")
 @click.option("--in-place", is_flag=True, help="Add the tables to BOOK itself.")
 @click.option("--overwrite", is_flag=True, help="Replace an existing file, whoever wrote it.")
+@number_style_option
 @functions_option
 def prepare_book(
     book: Path,

@@ -111,13 +111,14 @@ def _other_version(found: Replayed) -> Iterator[str]:
 
 def _verdict(found: Replayed) -> str:
 
-    accepted = _figure(found.record["counts.accepted"])
+    count = found.record["counts.accepted"]
+    accepted = f"{_figure(count)} accepted trial{'s' * (count != 1)}"
     if found.to_the_last_bit:
-        return f"identical: the same {accepted} accepted trials to the last bit"
+        return f"identical: the same {accepted} to the last bit"
     if found.identical:
-        return f"identical to 1e-12: the same {accepted} accepted trials, their numbers equal but for rounding"
+        return f"identical to 1e-12: the same {accepted}, their numbers equal but for rounding"
     if found.same_bits:
-        return f"differs, although the {accepted} accepted trials are the same to the last bit"
+        return f"differs, although the {accepted} {'is' if count == 1 else 'are'} the same to the last bit"
     return "differs"
 
 

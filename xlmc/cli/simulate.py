@@ -163,7 +163,7 @@ def show_run(run: RunResult) -> None:
     from xlmc.cli.check import check_table, show_first
     from xlmc.cli.printing import table
     from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
-    from xlmc.montecarlo.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text, counted_text
     from xlmc.outputs.document import further_sections
     from xlmc.outputs.document.parts import Heading
     from xlmc.outputs.summary import error_sentence, rejection_rows, summarise, summary_text
@@ -183,7 +183,7 @@ def show_run(run: RunResult) -> None:
         )
         table(of, ("Filter", "Keeps", "Rejected", "Only by it"), rejection_rows(run), right=(2, 3))
     if run.model.forecast_filters:
-        of = f"Discarded of {count_text(run.accepted)} accepted trials, for one forecast only"
+        of = f"Discarded of {counted_text(run.accepted, 'accepted trial')}, for one forecast only"
         table(of, ("Filter", "Only for", "Keeps", "Discarded", "Share"), _discards(run), right=(3, 4))
     _show_evidence(run)
     check_table(run)
@@ -228,14 +228,14 @@ def _show_scenarios(run: RunResult) -> None:
 
 def _acceptance_sentence(run: RunResult) -> str:
     from xlmc.analysis.results.record.errors_met import rest_sentences
-    from xlmc.montecarlo.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text, counted_text
     from xlmc.outputs.summary import share_text
 
     if run.rare is not None:
         from xlmc.montecarlo.rare.account import probability_text
 
         return (
-            f"{count_text(run.accepted)} accepted trials; a trial is accepted with probability "
+            f"{counted_text(run.accepted, 'accepted trial')}; a trial is accepted with probability "
             f"{probability_text(run.rare)}"
         )
     if any(errors.total() for errors in run.faults.values()) or run.model.forecast_filters:

@@ -20,6 +20,7 @@ from typing import Final
 __all__ = [
     "MOST_DIGITS",
     "count_text",
+    "counted_text",
     "decimals_of",
     "exact_digits",
     "exact_text",
@@ -41,7 +42,7 @@ _LARGEST, _SMALLEST = 15, -4
 """Powers of ten from which on, and below which, a number is written with a power of ten."""
 
 _DIGITS = 6
-_EXACT_DIGITS: Final = range(6, 16)
+_EXACT_DIGITS: Final = range(6, 14)
 """Digits of a number that is exact; one that has more of them is no decimal number, and six are enough."""
 _NOISE: Final = 1e-13
 """Share of such a number that may come from rounding in formulas, where it has no more than `_ROUND` digits."""
@@ -91,6 +92,15 @@ def styled_text(value: float | Decimal, form: str) -> str:
 def count_text(count: int) -> str:
     """Write a count of trials or of anything else, `200,000`."""
     return _styled(f"{count:,}")
+
+
+def counted_text(count: int, noun: str) -> str:
+    """Write how many of something there are.
+
+    >>> counted_text(1, "accepted trial"), counted_text(200000, "accepted trial")
+    ('1 accepted trial', '200,000 accepted trials')
+    """
+    return f"{count_text(count)} {noun}{'s' * (count != 1)}"
 
 
 def fixed_text(value: float, decimals: int) -> str:

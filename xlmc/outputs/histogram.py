@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 from xlmc.montecarlo.columns import parts, release
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
-from xlmc.montecarlo.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, counted_text, number_text
 from xlmc.montecarlo.statistics.sample import Sample, Values
 from xlmc.outputs.summary import (
     SummaryRow,
@@ -396,15 +396,15 @@ class Figure:
         row = self.answer
         units = f" {row.units}" if row.units else ""
         said = (
-            f"mean {answer_text(row)}{units}; the central {percent(row.share)} of {count_text(row.trials)} accepted "
-            f"trials lie from {central_text(row)}{units}"
+            f"mean {answer_text(row)}{units}; the central {percent(row.share)} of "
+            f"{counted_text(row.trials, 'accepted trial')} lie from {central_text(row)}{units}"
         )
         if row.yes is not None:
-            said = f"yes in {answer_text(row)} of {count_text(row.trials)} accepted trials, else no"
+            said = f"yes in {answer_text(row)} of {counted_text(row.trials, 'accepted trial')}, else no"
         if row.categories:
             shares = [f"{text or '(empty)'} {share_text(share)}" for text, share in row.categories.items()]
             more = f"; {count_text(len(shares) - _MOST_SAID)} more texts" if len(shares) > _MOST_SAID else ""
-            said = f"{'; '.join(shares[:_MOST_SAID])}{more}; of {count_text(row.trials)} accepted trials"
+            said = f"{'; '.join(shares[:_MOST_SAID])}{more}; of {counted_text(row.trials, 'accepted trial')}"
         return said
 
     @property

@@ -350,6 +350,7 @@ class Decision:
         contents: of values that are texts, TRUE or FALSE what is typed into the cell, each at its value, from 0; else
             empty.
         base: the value that the cell holds; None for none, or no number.
+        form: how the values of its cell are written.
     """
 
     name: str
@@ -361,6 +362,7 @@ class Decision:
     listed: bool = False
     contents: tuple[str | bool, ...] = ()
     base: float | None = None
+    form: Form = field(default=PLAIN, compare=False, repr=False)
 
     def content(self, value: float) -> float | str | bool:
         """Return what is typed into the cell for a value."""
@@ -371,7 +373,7 @@ class Decision:
         content = self.content(value)
         if isinstance(content, bool):
             return "TRUE" if content else "FALSE"
-        return content if isinstance(content, str) else exact_text(content)
+        return content if isinstance(content, str) else self.form.number(content)
 
     def value_of(self, content: CellValue) -> float | None:
         """Return the value that a cell's content is; None where it is none, or no number."""
@@ -385,11 +387,12 @@ class Decision:
     def values_text(self) -> str:
         """The values in words: `5; 6`, `20 to 60 in steps of 10`, `0 to 1`."""
         if self.between is not None:
-            return f"{exact_text(self.between[0])} to {exact_text(self.between[1])}"
+            return " to ".join(map(self.form.number, self.between))
         if self.listed or len(self.values) < 3:
             return "; ".join(map(self.shown, self.values))
         step = float(f"{self.values[1] - self.values[0]:.12g}")
-        return f"{exact_text(self.values[0])} to {exact_text(self.values[-1])} in steps of {exact_text(step)}"
+        ends = " to ".join(map(self.form.number, (self.values[0], self.values[-1])))
+        return f"{ends} in steps of {self.form.width(step)}"
 
 
 @dataclass(frozen=True, slots=True)

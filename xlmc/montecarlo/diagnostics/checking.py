@@ -13,7 +13,7 @@ from xlmc.engine.engine import BLANK_RESULT, TEXT_RESULT
 from xlmc.errors import ErrorCode
 from xlmc.montecarlo.loop.blocks import portions
 from xlmc.montecarlo.model.draw_binding import base_point
-from xlmc.montecarlo.number_text import count_text, exact_text, styled_text
+from xlmc.montecarlo.number_text import count_text, counted_text, exact_text, styled_text
 from xlmc.montecarlo.statistics import Estimate, proportion
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ class CheckResult:
     @property
     def looked_at(self) -> str:
         """`the first 65,536 accepted trials`; without `the first` where they are all."""
-        trials = "1 accepted trial" if self.trials == 1 else f"{count_text(self.trials)} accepted trials"
+        trials = counted_text(self.trials, "accepted trial")
         return f"{'the first ' if self.trials < self.accepted else ''}{trials}"
 
     @property

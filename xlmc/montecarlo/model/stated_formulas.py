@@ -10,18 +10,18 @@ from typing import Final, TypeVar
 
 from xlmc.excel.address import Cell, host_of
 from xlmc.excel.workbook.workbook import Workbook
-from xlmc.montecarlo.definitions.definitions import Assumption, Definitions, Filter, StatedNumber
+from xlmc.montecarlo.definitions.definitions import Assumption, Decision, Definitions, Filter, StatedNumber
 from xlmc.montecarlo.definitions.scenarios import Scenario, Typed
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.cell_forms import forms_of
 
-__all__ = ["with_stated_formulas"]
+__all__ = ["in_their_forms", "with_stated_formulas"]
 
 _LONGEST: Final = 40
 """Characters of a formula; a longer one is named by its cell."""
 
 Values = Callable[[Sequence[Cell]], Mapping[Cell, float]]
-R = TypeVar("R", Assumption, Filter)
+R = TypeVar("R", Assumption, Filter, Decision)
 
 
 def with_stated_formulas(
@@ -35,7 +35,7 @@ def with_stated_formulas(
         definitions: the same, with numbers where no assumption may vary them.
         values: computes cells at the base case, those that can be.
     """
-    definitions = _in_their_forms(workbook, definitions)
+    definitions = in_their_forms(workbook, definitions)
     limits = (*definitions.filters, *definitions.forecast_filters)
     asked: list[Assumption | Filter] = [*definitions.assumptions, *limits, *given.assumptions]
     if not any(each.formulas for each in asked):
@@ -78,10 +78,10 @@ def _assumption(
     return replace(assumption, stated={**assumption.stated, **stated}) if stated else assumption
 
 
-def _in_their_forms(workbook: Workbook, definitions: Definitions) -> Definitions:
-    """Return the definitions with the forms of the cells that show dates, percentages or money."""
+def in_their_forms(workbook: Workbook, definitions: Definitions) -> Definitions:
+    """Return the definitions with the forms of those of their cells that show dates, percentages or money."""
     limits = (*definitions.filters, *definitions.forecast_filters)
-    rows: list[Assumption | Filter] = [*definitions.assumptions, *limits]
+    rows: list[Assumption | Filter | Decision] = [*definitions.assumptions, *limits, *definitions.decisions]
     typed = [change.cell for each in definitions.scenarios for change in each.changes if isinstance(change, Typed)]
     cells = [*dict.fromkeys([*(host_of(each.cell) for each in rows), *typed])]
     forms = dict(zip(cells, forms_of(workbook, cells), strict=True))
@@ -106,6 +106,7 @@ def _in_their_forms(workbook: Workbook, definitions: Definitions) -> Definitions
         filters=tuple(map(row, definitions.filters)),
         forecast_filters=tuple(map(row, definitions.forecast_filters)),
         scenarios=tuple(map(scenario, definitions.scenarios)),
+        decisions=tuple(map(row, definitions.decisions)),
     )
 
 

@@ -34,7 +34,7 @@ from xlmc.montecarlo.loop.forecast_result import ForecastResult, Replicates, tai
 from xlmc.montecarlo.loop.stopping import Stopped
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.model.plain_words import list_of
-from xlmc.montecarlo.number_text import count_text, number_text, styled_text
+from xlmc.montecarlo.number_text import count_text, counted_text, number_text, styled_text
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.statistics import Estimate
@@ -424,9 +424,8 @@ class RunResult:
         import pandas
 
         if inputs and self.kept_inputs < self.accepted:
-            message = (
-                f"the draws of {count_text(self.kept_inputs)} of {count_text(self.accepted)} accepted trials were kept"
-            )
+            every = counted_text(self.accepted, "accepted trial")
+            message = f"the draws of {count_text(self.kept_inputs)} of {every} were kept"
             raise SimulationError(message, hint="use frame(inputs=False), or simulate(…, keep_inputs=None)")
         columns: dict[str, Any] = {
             forecast_heading(name): self._as_texts(name, values) for name, values in self.forecasts.items()

@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from xlmc.errors import DefinitionError, FormulaError, WorkbookError
-from xlmc.excel.address import InFormula
+from xlmc.excel.address import Cell, InFormula, host_of
 from xlmc.excel.workbook.inject import inject, remove_result_sheets
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
@@ -25,6 +25,8 @@ from xlmc.excel.workbook.workbook import Workbook
 from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.new_tables import NewTable, new_tables
+from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.model.cell_forms import forms_of
 from xlmc.montecarlo.model.loading import build_model
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
@@ -75,7 +77,7 @@ def convert(model: CompiledModel, path: Path, *, overwrite: bool = False) -> Con
         raise WorkbookError("all that the workbook defines is in xlmc's tables already", where=model.path, hint=hint)
     parts = inject(
         remove_result_sheets(workbook.parts),
-        built_sheet(tables, left, _free_name(workbook)),
+        built_sheet(tables, left, _free_name(workbook), _formats(workbook, tables)),
         replace=False,
         marked=False,
     )
@@ -83,6 +85,13 @@ def convert(model: CompiledModel, path: Path, *, overwrite: bool = False) -> Con
     _compare(model, build_model(read_workbook(data, path.name, workbook.functions), path))
     write_workbook(path, data, target.check)
     return Converted(path, tables, left)
+
+
+def _formats(workbook: Workbook, tables: tuple[NewTable, ...]) -> dict[Cell, str]:
+    """Return the number formats of calls whose cells show dates, percentages or money."""
+    calls = [row.call for table in tables for row in table.rows if row.call is not None]
+    forms = forms_of(workbook, [host_of(call) for call in calls])
+    return {call: form.code for call, form in zip(calls, forms, strict=True) if form.kind is not Kind.NUMBER}
 
 
 def _free_name(workbook: Workbook) -> str:

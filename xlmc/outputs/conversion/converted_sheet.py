@@ -40,6 +40,9 @@ _INTRODUCTION: Final = (
     "Value draws. Lines in red could not be converted.",
 )
 
+_DRAWN: Final[dict[str, Any]] = {"bg_color": "#DDEEDD", "valign": "top", "align": "left"}
+"""How cells look that stand for calls."""
+
 
 class Left(NamedTuple):
     """What could not be converted: what it is, its name, its cell, what it was, and why.
@@ -56,25 +59,30 @@ class Left(NamedTuple):
     refused: Cell | None = None
 
 
-def built_sheet(tables: Sequence[NewTable], left: Sequence[Left], name: str = SHEET) -> dict[str, bytes]:
+def built_sheet(
+    tables: Sequence[NewTable], left: Sequence[Left], name: str = SHEET, formats: Mapping[Cell, str] | None = None
+) -> dict[str, bytes]:
     """Return the sheet as the parts of a workbook that holds it alone.
 
     Args:
         tables: to write.
         left: what could not be converted.
         name: of the sheet; the workbook must have none of that name.
+        formats: call in a formula -> the number format of its value, where that is a date, a percentage or money.
     """
     with ExactBook() as book:
         book.set_properties({"created": CREATED})
         sheet = book.add_worksheet(name)
         sheet.use_future_functions = True
-        _Sheet(book, sheet, tables).write(left)
+        _Sheet(book, sheet, tables, formats or {}).write(left)
     parts: dict[str, bytes] = book.parts
     return parts
 
 
 class _Sheet:
-    def __init__(self, book: ExactBook, sheet: ExactSheet, tables: Sequence[NewTable]) -> None:
+    def __init__(
+        self, book: ExactBook, sheet: ExactSheet, tables: Sequence[NewTable], formats: Mapping[Cell, str]
+    ) -> None:
         self._book, self._sheet, self._tables = book, sheet, tables
         self._blocks = 0
         self._tops = [_TOP]
@@ -86,11 +94,14 @@ class _Sheet:
             "header": book.add_format({"bold": True, "bg_color": "#1F3044", "font_color": "#FFFFFF"}),
             "text": book.add_format({"valign": "top", "align": "left"}),
             "wrapped": book.add_format({"valign": "top", "align": "left", "text_wrap": True}),
-            "drawn": book.add_format({"bg_color": "#DDEEDD", "valign": "top", "align": "left"}),
+            "drawn": book.add_format(_DRAWN),
             "red": book.add_format(
                 {"font_color": "#C00000", "bold": True, "valign": "top", "align": "left", "text_wrap": True}
             ),
             "grey": book.add_format({"font_color": "#52606D"}),
+        }
+        self._drawn = {
+            call: book.add_format(_DRAWN | {"num_format": code}) for call, code in sorted(formats.items(), key=str)
         }
         self._calls: dict[Cell, str] = {}
         for table, top in zip(tables, self._tops, strict=False):
@@ -121,7 +132,9 @@ class _Sheet:
         self._sheet.write_string(top - 1, 0, _TITLES[table.kind], self._styles["heading"])
         for number, row in enumerate(table.rows, top + 1):
             for column, heading in enumerate(table.headings):
-                style = self._styles["drawn" if heading == "Value" and row.call is not None else "text"]
+                style = self._styles["text"]
+                if heading == "Value" and row.call is not None:
+                    style = self._drawn.get(row.call, self._styles["drawn"])
                 self._entry(number, column, row.cells.get(heading, ""), style)
         self._add_table(table.kind, top, len(table.rows), table.headings)
 

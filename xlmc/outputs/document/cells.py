@@ -68,6 +68,8 @@ _FORMAT = re.compile(r"(?P<grouped>#,##)?0(\.(?P<decimals>0+))?(?P<ending>%|E\+0
 
 _WITH_WORDS = re.compile(r'(?:"(?P<before>[^"]*)")?(?P<digits>(?:#,##)?0(?:\.0+)?(?:E\+00)?)(?:"(?P<after>[^"]*)")?')
 
+_POWER = re.compile(r"0(?:\.0+)?E\+00")
+
 _LONGEST = 11
 """Characters of a number that Excel shows in a cell without a format."""
 
@@ -94,6 +96,8 @@ class Shown:
     def __post_init__(self) -> None:
         if not self.look:
             object.__setattr__(self, "look", "text" if isinstance(self.value, str) else "number")
+        if self.value == 0.0 and "E+00" in self.format:  # 0, not 0.000E+00
+            object.__setattr__(self, "format", _POWER.sub("0", self.format))
 
 
 BLANK = Shown(None)

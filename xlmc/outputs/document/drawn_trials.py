@@ -13,7 +13,7 @@ import numpy as np
 from xlmc.errors import DefinitionError, WorkbookError
 from xlmc.excel.address import Area, parse_address
 from xlmc.montecarlo.definitions.cell_references import cell_of_reference, split_sheet
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import counted_text
 from xlmc.outputs.document.parts import Chart, Line, Lines
 from xlmc.outputs.document.scene_drawing import SceneLine, scenes
 
@@ -60,7 +60,7 @@ def _over(
         if len(set(points)) > 1:
             cloud = Line("Accepted trials", tuple(points))
             named = " and ".join(f"“{line.name}”" for line in curves)
-            said = f"{count_text(len(points))} accepted trials over {named}"
+            said = f"{counted_text(len(points), 'accepted trial')} over {named}"
             return Chart("", axes[0], Lines(curves, axes[1], cloud=cloud), said)
     return None
 

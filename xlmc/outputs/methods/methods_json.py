@@ -8,7 +8,7 @@ from xlmc.analysis.studies.methods import STATISTICS, Curve, Runs, Study, need, 
 from xlmc.analysis.studies.methods.need import choice, worst_error
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import finite
-from xlmc.outputs.methods.methods_tables import cannot
+from xlmc.outputs.methods.methods_tables import cannot, floor_of
 
 __all__ = ["study_json"]
 
@@ -40,6 +40,14 @@ def study_json(found: Study) -> dict[str, Any]:
                 for name, answer in reference.answers.items()
             },
             "widths": {name: finite(width) for name, width in reference.widths.items()},
+            "own_errors_of_widths": {each: finite(floor_of(found, each)) for each in STATISTICS},
+            "independent_trials": {
+                "trials": found.ladder[-1],
+                "errors": {
+                    name: {each: finite(reference.theory(name, each, found.ladder[-1])) for each in STATISTICS}
+                    for name in reference.answers
+                },
+            },
         },
         "recommended": chosen and chosen.method.key,
         "cheapest": [curve.method.key for curve in best.cheapest] if best else [],
@@ -87,6 +95,7 @@ def _of_length(found: Study, runs: Runs, drawn: bool) -> dict[str, Any]:
         "effective": runs.effective,
         "failed": runs.failed,
         "acceptance_error": None if runs.acceptance is None else finite(runs.acceptance.value),
+        "errors_of_widths": {each: finite(runs.shares[each]) for each in STATISTICS},
         "errors": {
             forecast.name: {
                 each: {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.document.parts import Table
 from xlmc.outputs.summary import share_text
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.definitions import Forecast
 
 __all__ = [
     "accepted_text",
@@ -172,11 +175,9 @@ def bounds_table(study: Study) -> Table:
     curves = [curve for curve in study.once if curve.ranges]
     rows: list[tuple[str, ...]] = []
     for forecast in study.model.forecasts:
-        answer = study.reference.answers[forecast.name]
         found = [curve.ranges.get(forecast.name, (np.nan, np.nan)) for curve in curves]
         form = study.reference.form(forecast.name)
-        central = _NONE if form.kind is Kind.YES_NO else _ends(form, answer.low, answer.high)
-        rows.append((forecast.name, forecast.units, *(_ends(form, *each) for each in found), central))
+        rows.append((forecast.name, forecast.units, *(_ends(form, *each) for each in found), _central(study, forecast)))
     last = [curve.lengths[-1] for curve in curves]
     rows.append(("Evaluations", "", *(fixed_text(runs.evaluations, 0) for runs in last), ""))
     rows.append(("Time", "", *(seconds_text(runs.seconds) for runs in last), ""))
@@ -249,6 +250,19 @@ def _of_kind(form: Form, statistic: str, value: float, error: float, *, spread: 
         found = Estimate(float(value), float(error))
         return form.spread(found) if spread else form.estimate(found)
     return span_text(float(value)) if form.kind is Kind.DATE else form.rough(float(f"{value:.2g}"))
+
+
+def _central(study: Study, forecast: Forecast) -> str:
+    """Return the central range of the reference, in the digits that its errors support."""
+    answer, error = study.reference.answers[forecast.name], study.reference.errors[forecast.name]
+    form = study.reference.form(forecast.name)
+    if form.kind is Kind.YES_NO or not (np.isfinite(answer.low) and np.isfinite(answer.high)):
+        return _NONE
+    low, high = Estimate(answer.low, error.low), Estimate(answer.high, error.high)
+    decimals = form.decimals_of_both(low, high)
+    if decimals is None:
+        return " to ".join(form.value(end) for end in (low, high))
+    return " to ".join(form.number(end.value, decimals) for end in (low, high))
 
 
 def _ends(form: Form, least: float, most: float) -> str:

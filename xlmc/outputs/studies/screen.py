@@ -127,6 +127,13 @@ def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
     return number, sizes[number]
 
 
+def _most_moved_json(found: Screening, cost: Cost, name: str) -> tuple[str, float | None]:
+    from xlmc.montecarlo.statistics.estimate import finite
+
+    number, size = _most_moved(found, cost, name)
+    return number, finite(size)
+
+
 def _tolerance(found: Screening, name: str) -> str:
     """Return the tolerance of a forecast in words: `1 mph, and P(> 18) 1.2 points`."""
     from xlmc.analysis.studies.comparison.verdicts import is_chance, points, tolerance_text
@@ -305,5 +312,10 @@ def _entry(cost: Cost, found: Screening) -> dict[str, object]:
         "decided_by": cost.judgement.largest,
         "trials_needed": finite(cost.judgement.times * found.run.trials),
         "acceptance": acceptance_json(cost.acceptance),
+        "moves_most": {
+            name: dict(zip(("number", "tolerances"), _most_moved_json(found, cost, name), strict=True))
+            for name in found.tolerances
+            if name not in cost.lost
+        },
         "forecasts": {name: difference_json(each) for name, each in cost.forecasts.items()},
     }

@@ -20,7 +20,7 @@ from xlmc.analysis.results.statements.significant_digits import (
 from xlmc.montecarlo.definitions.stating import Kind, Role
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.parameters import range_text
-from xlmc.montecarlo.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, counted_text, number_text
 from xlmc.montecarlo.statistics import Estimate, complement, probability_above, probability_between
 
 if TYPE_CHECKING:
@@ -209,13 +209,13 @@ def _part_text(result: ForecastResult) -> str:
     """Which of the accepted trials the shares are of, where a forecast has no answer in some of them."""
     numbers, others, discarded = result.statistics.trials, result.faults.total(), result.discards.total()
     if discarded:
-        every = count_text(numbers + others + discarded)
-        return f"; counted in the {count_text(numbers)} of {every} accepted trials that its filters keep"
+        every = counted_text(numbers + others + discarded, "accepted trial")
+        return f"; counted in the {count_text(numbers)} of {every} that its filters keep"
     if not others:
         return ""
-    every = count_text(numbers + others)
+    every = counted_text(numbers + others, "accepted trial")
     what = "has an answer" if result.kind in (Kind.YES_NO, Kind.CATEGORY) else "is a number"
-    return f"; counted in the {count_text(numbers)} of {every} accepted trials in which it {what}"
+    return f"; counted in the {count_text(numbers)} of {every} in which it {what}"
 
 
 def _range_text(found: RoundedRange, nominal: float, units: str, trials: int) -> str:

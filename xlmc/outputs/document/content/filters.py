@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from xlmc.analysis.results.record.errors_met import ErrorMet, errors_met
 from xlmc.analysis.results.statements.in_words import REJECTED_SENTENCE, discards_of, limits_text
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.montecarlo.statistics import Estimate, proportion
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE
@@ -153,9 +153,9 @@ def _discards(simulation: RunResult) -> Iterator[Block]:
     widths, spans = (2.0, 1.7, 1.2, 1.5, 1.1, 1.7, 2.0), (1, 3, 1, 2, 1, 1, 2)
     yield Table("", heads, tuple(rows), (), widths, "Filters for some forecasts only.", spans)
     yield Paragraph(
-        f"These filters reject no trial. Of the {count_text(simulation.accepted)} accepted trials, a forecast named "
-        "here counts those that its filters keep; all other forecasts count them all. A trial that two of its filters "
-        "discard is counted for the first.",
+        f"These filters reject no trial. Of the {counted_text(simulation.accepted, 'accepted trial')}, a forecast "
+        "named here counts those that its filters keep; all other forecasts count them all. A trial that two of its "
+        "filters discard is counted for the first.",
         "small",
     )
 

@@ -15,7 +15,7 @@ import numpy as np
 
 from xlmc.analysis.results.statements import meaning, stated_range, statements
 from xlmc.montecarlo.definitions.stating import NOT_ROUNDED
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.montecarlo.statistics import proportion
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
@@ -48,7 +48,7 @@ def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None
     """Write the sheet; `trials` is where the trials stand that its formulas count."""
     name = simulation.model.workbook.name
     page.height = _ROW
-    page.title("Certainty", f"{name}: {count_text(simulation.accepted)} accepted trials")
+    page.title("Certainty", f"{name}: {counted_text(simulation.accepted, 'accepted trial')}")
     if said := statements(simulation):
         page.heading("In words")
         for statement in said:
@@ -82,11 +82,10 @@ def _write_own_ranges(page: Page, simulation: RunResult, trials: TrialsAt) -> No
 
 
 def _instructions(simulation: RunResult, trials: TrialsAt) -> str:
-    which = f"all {count_text(trials.shown)} accepted trials"
+    which = f"all {counted_text(trials.shown, 'accepted trial')}"
     if trials.shown < simulation.accepted:
-        which = (
-            f"the first {count_text(trials.shown)} of {count_text(simulation.accepted)} accepted trials, which stand"
-        )
+        every = counted_text(simulation.accepted, "accepted trial")
+        which = f"the first {count_text(trials.shown)} of {every}, which stand"
     else:
         which += ", which stand"
     said = f"Type the ends of a range into the yellow cells; an empty cell means no limit. Formulas count {which} on "

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import counted_text
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.histogram import Figure, varying
 from xlmc.outputs.sheets.bins_sheet import BinsAt, histogram_chart
@@ -68,7 +68,9 @@ def write_charts(
 ) -> None:
     """Write the sheet with the charts; `bins` says where their bins stand, `curves` takes the other numbers."""
     name = simulation.model.workbook.name
-    page.title("Forecast charts of the accepted trials", f"{name}: {count_text(simulation.accepted)} accepted trials")
+    page.title(
+        "Forecast charts of the accepted trials", f"{name}: {counted_text(simulation.accepted, 'accepted trial')}"
+    )
     left_out = len(simulation.model.forecasts) - len(simulation.detailed)
     page.wide(_PRINTED, "remark", len(WIDTHS) - 1)
     page.row = _FIRST

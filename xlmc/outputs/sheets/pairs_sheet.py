@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from xlmc.analysis.results.statements import Pair, pairs_of
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.colours import DARK
@@ -54,7 +54,7 @@ class _Points:
 def write_pairs(page: Page, book: Workbook, simulation: RunResult, curves: Curves, trials: TrialsAt) -> None:
     """Write the sheet; its charts draw the trials where `trials` says, or points that `curves` takes."""
     name = simulation.model.workbook.name
-    page.title("Forecasts two at a time", f"{name}: {count_text(simulation.accepted)} accepted trials")
+    page.title("Forecasts two at a time", f"{name}: {counted_text(simulation.accepted, 'accepted trial')}")
     pairs = pairs_of(simulation)
     if not pairs:
         page.row += 1

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.analysis.studies.sensitivity.measures import noise
 from xlmc.montecarlo.definitions.forms import PLAIN
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.outputs.document.content.sensitivity import (
     BENT,
     EXPLAINED_CHART,
@@ -84,7 +84,7 @@ def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, source: 
     The charts draw the tables that stand below them, so room is left for them.
     """
     page.title(
-        "Sensitivity: what the answers depend on", f"{source.name}: {count_text(found.accepted)} accepted trials"
+        "Sensitivity: what the answers depend on", f"{source.name}: {counted_text(found.accepted, 'accepted trial')}"
     )
     bent = f" {BENT}" if any(map(is_bent, found.forecasts)) else ""
     printed_only = _printed_sentence(len(found.forecasts))
@@ -165,7 +165,7 @@ def _brief(forecast: ForecastSensitivity) -> list[str] | None:
 
 def _nothing(forecast: ForecastSensitivity) -> str:
     return (
-        f"It is a number in {count_text(forecast.trials)} accepted trials: too few to say what "
+        f"It is a number in {counted_text(forecast.trials, 'accepted trial')}: too few to say what "
         "influences it, or it is the same "
         "in all of them, or the draws of the accepted trials were not kept."
     )

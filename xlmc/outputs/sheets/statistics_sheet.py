@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Final
 
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import counted_text
 from xlmc.outputs.document.content.statistics import statistics_sentence, statistics_tables
 from xlmc.outputs.sheets.xlsx_writer import write_blocks
 
@@ -29,7 +29,9 @@ def write_statistics(page: Page, simulation: RunResult) -> None:
     """Write the sheet."""
     name = simulation.model.workbook.name
     page.height = _ROW
-    below = f"{name}: {count_text(simulation.accepted)} accepted trials. From … to: the 95 % interval of each number"
+    below = (
+        f"{name}: {counted_text(simulation.accepted, 'accepted trial')}. From … to: the 95 % interval of each number"
+    )
     page.title("Statistics of the accepted trials", below)
     results = list(simulation.results.values())
     last = len(_COLUMNS) * min(max(len(results), 1), _ACROSS)

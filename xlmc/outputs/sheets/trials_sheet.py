@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.stating import Kind
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.montecarlo.simulation.simulation import weight_heading
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
@@ -89,10 +89,11 @@ def write_trials(page: Page, simulation: RunResult, rows: int = TRIAL_ROWS) -> T
 def _count_line(shown: int, accepted: int) -> Shown:
     if shown == accepted:
         return Shown(
-            f"All {count_text(accepted)} accepted trials." if accepted else "No trial was accepted.", look="subtitle"
+            f"All {counted_text(accepted, 'accepted trial')}." if accepted else "No trial was accepted.",
+            look="subtitle",
         )
     return Shown(
-        f"Only the first {count_text(shown)} of {count_text(accepted)} accepted trials stand here.", look="alarm"
+        f"Only the first {count_text(shown)} of {counted_text(accepted, 'accepted trial')} stand here.", look="alarm"
     )
 
 

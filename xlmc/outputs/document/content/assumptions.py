@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.analysis.results.record.definition_tables import correlations_met
 from xlmc.analysis.results.statements.in_words import distribution_text, status
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
-from xlmc.montecarlo.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, counted_text, number_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE, Shown
 from xlmc.outputs.document.charts import shape_chart
@@ -69,7 +69,7 @@ def assumption_remarks(simulation: RunResult) -> Iterator[str]:
     if simulation.kept_inputs < simulation.accepted:
         yield (
             f"Accepted: the first {count_text(simulation.kept_inputs)} of "
-            f"{count_text(simulation.accepted)} accepted trials."
+            f"{counted_text(simulation.accepted, 'accepted trial')}."
         )
 
 

@@ -10,7 +10,7 @@ from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.influences import MEASURED
 from xlmc.analysis.studies.sensitivity.measures import Noise, noise
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
-from xlmc.montecarlo.number_text import count_text, fixed_text
+from xlmc.montecarlo.number_text import count_text, counted_text, fixed_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE, Shown
 from xlmc.outputs.document.charts import contribution_chart, influence_chart, tornado_chart
@@ -228,8 +228,8 @@ def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
         "effects add up to 100 % or more. (Sobol's total index; first order is the part that it explains alone.)"
     )
     rank = (
-        f"Rank correlation on {count_text(found.trials)} accepted trials: whether the forecast rises or falls with the "
-        "assumption. It does not show effects that rise and fall, and it is not a share of the variance."
+        f"Rank correlation on {counted_text(found.trials, 'accepted trial')}: whether the forecast rises or falls "
+        "with the assumption. It does not show effects that rise and fall, and it is not a share of the variance."
     )
     contribution = (
         "Contribution to variance as Crystal Ball shows it: squared rank correlations scaled to 100 %. Approximate, "

@@ -8,10 +8,11 @@ it opens the file.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from pathlib import Path
 
 from xlmc.analysis.studies.scenario_answers import model_of, scenario_named
+from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, ErrorCode, WorkbookError
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.formats import other_format

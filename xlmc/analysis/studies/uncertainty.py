@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from typing import Final, TypedDict
 
@@ -27,6 +26,7 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.comparison.variations import names_of_rows, with_plain_sampling
 from xlmc.analysis.studies.shown import Shown
+from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.forms import Form

@@ -9,9 +9,10 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Mapping, Set
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import chain
 
+from xlmc.data_classes import dataclass
 from xlmc.excel.address import Area, Cell
 
 __all__ = ["Needs", "Part", "Stretch", "Strips"]

@@ -6,9 +6,10 @@ import hashlib
 import os
 import unicodedata
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
+from xlmc.data_classes import dataclass
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.formats import FORMATS, other_format
 from xlmc.excel.workbook.package import WORKBOOKS

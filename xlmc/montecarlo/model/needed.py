@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Container, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
+from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, Notice
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import Graph, Resolver, build_graph, ir

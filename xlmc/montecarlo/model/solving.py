@@ -8,12 +8,13 @@ trial without a solution is `#N/A`, one with several `#NUM!`, unless the row say
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Target
 from xlmc.engine.graph.lowering import Lowering, lower_cells
 from xlmc.engine.numpy.numpy_engine import NumpyProgram

@@ -18,12 +18,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.data_classes import dataclass
 from xlmc.montecarlo.rare.mixture import Mixture, fit_mixture, log_sum, standard_log_density
 
 __all__ = ["COPIED", "Proposal", "Shear", "copies", "fit_proposal", "fit_shear", "height", "refit"]

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import fields
 
 from numpy.typing import ArrayLike
 
+from xlmc.data_classes import dataclass
 from xlmc.montecarlo.statistics import quantiles, smooth
 from xlmc.montecarlo.statistics.estimate import Estimate
 from xlmc.montecarlo.statistics.mode import mode

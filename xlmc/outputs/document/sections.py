@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from importlib import import_module
 from typing import TYPE_CHECKING, Final, cast
+
+from xlmc.data_classes import dataclass
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.vocabulary import Vocabulary

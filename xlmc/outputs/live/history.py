@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Final
 
+from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.outputs.live.adjustments import Adjustments
 

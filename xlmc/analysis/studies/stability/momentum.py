@@ -15,10 +15,11 @@ A form is shown only after 50 digits have confirmed it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from xlmc.analysis.studies.stability.case import Case
 from xlmc.analysis.studies.stability.formula_trees import factors, terms
+from xlmc.data_classes import dataclass
 from xlmc.excel.formula import ir
 
 __all__ = ["Momentum", "angle_of", "components", "sine", "spin", "times"]

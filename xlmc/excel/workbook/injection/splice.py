@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from html import escape
 
+from xlmc.data_classes import dataclass
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.safe_xml import REPAIR, expat_parser, feed
 

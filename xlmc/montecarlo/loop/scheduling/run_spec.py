@@ -5,10 +5,11 @@ from __future__ import annotations
 import pickle
 import platform
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Program
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import SimulationError

@@ -17,7 +17,7 @@ from xlmc.excel.workbook.injection.splice import as_utf8, parse_spans
 from xlmc.excel.workbook.injection.style_numbers import styles_from
 from xlmc.excel.workbook.package import CONTENT_TYPES, relationships, rels_part
 from xlmc.excel.workbook.safe_xml import REPAIR, tree
-from xlmc.excel.workbook.writer import package_bytes
+from xlmc.excel.workbook.writer import SMALL, package_bytes
 
 __all__ = ["checked_bytes", "faults"]
 
@@ -27,12 +27,13 @@ _MOST_NAMED = 5
 _Value = TypeVar("_Value", str, tuple[str, str])
 
 
-def checked_bytes(parts: Mapping[str, bytes], before: Mapping[str, bytes]) -> bytes:
+def checked_bytes(parts: Mapping[str, bytes], before: Mapping[str, bytes], level: int = SMALL) -> bytes:
     """Pack the parts of a workbook once they are found whole.
 
     Args:
         parts: of the workbook to write.
         before: the parts of the workbook as it was read.
+        level: how they are packed, as for `package_bytes`.
 
     Raises:
         WorkbookError: the package would have a fault that it did not have before.
@@ -46,7 +47,7 @@ def checked_bytes(parts: Mapping[str, bytes], before: Mapping[str, bytes]) -> by
         more = f"; and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
         named = "; ".join(fault[:200] for fault in found[:_MOST_NAMED])
         raise WorkbookError(f"the file that was to be written would be damaged: {named}{more}", hint=REPAIR)
-    return package_bytes(parts)
+    return package_bytes(parts, level)
 
 
 def faults(parts: Mapping[str, bytes], looked_at: Iterable[str]) -> list[str]:

@@ -15,6 +15,7 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import BinaryIO, Final
 from urllib.parse import quote, unquote
@@ -65,7 +66,7 @@ def read_seal(path: Path) -> Seal | None:
     """
     ending = path.suffix.casefold()
     if ending in WORKBOOKS:
-        return _seal_of_package(path)
+        return _seal_of_package(path.read_bytes())
     return _seal_at_end(path, ending) if ending in ENDINGS else None
 
 
@@ -154,9 +155,11 @@ def _digest(file: BinaryIO, size: int) -> hashlib._Hash:
     return digest
 
 
-def _seal_of_package(path: Path) -> Seal | None:
+@lru_cache(maxsize=1)
+def _seal_of_package(data: bytes) -> Seal | None:
+    """Return the seal in a workbook; a run asks three times about the file that it replaces."""
     try:
-        parts = read_parts(path.read_bytes())
+        parts = read_parts(data)
     except WorkbookError:  # it is no workbook, or one that was damaged
         return None
     seals = [name for name in parts if _SEAL_PART.fullmatch(name)]

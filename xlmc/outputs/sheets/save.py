@@ -20,7 +20,7 @@ from xlmc.excel.workbook.target import (
     refuse_into_source,
     refuse_read,
 )
-from xlmc.excel.workbook.writer import write_workbook
+from xlmc.excel.workbook.writer import QUICK, write_workbook
 from xlmc.montecarlo.diagnostics.result_cells import filled_sheets
 from xlmc.outputs.sheets.book import ResultSheet, build_sheets
 from xlmc.outputs.sheets.trials_sheet import TRIAL_ROWS
@@ -75,7 +75,7 @@ def save(
     parts = inject(own, sheets)
     if not _is_source(simulation, path):  # the person's own file, which is never ours to replace
         parts = sealed_parts(parts, result_sheets(parts)[-1], simulation.model.workbook.name)
-    write_workbook(path, checked_bytes(parts, book.parts), check)
+    write_workbook(path, checked_bytes(parts, book.parts, QUICK), check)
     return path
 
 

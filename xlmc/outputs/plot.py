@@ -11,8 +11,9 @@ import io
 import math
 import textwrap
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from importlib.util import find_spec
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,9 +27,11 @@ from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.keywords import forecast_named
 from xlmc.montecarlo.number_text import count_text, in_signs, signs, styled_text
 from xlmc.montecarlo.statistics import rank_correlation
-from xlmc.outputs.document.colours import DARK, GRID, INK, LIGHT
+from xlmc.outputs.document.axes_drawing import TITLE, draw_on, dress, short
+from xlmc.outputs.document.colours import DARK, INK, LIGHT
 from xlmc.outputs.document.drawn_trials import drawn_trials
-from xlmc.outputs.document.parts import Lines
+from xlmc.outputs.document.parts import Bar, Bars, Chart, Line, Lines, Shape
+from xlmc.outputs.filter_effect import shapes
 from xlmc.outputs.histogram import Figure as Drawn
 from xlmc.outputs.histogram import figures_of, short_name
 from xlmc.outputs.summary import answer_text, central_text, percent
@@ -48,20 +51,11 @@ _WIDTH, _HEIGHT, _HEAD = 10.0, 2.9, 0.75
 _POINTS: Final = 1_001
 """Points of a cumulative curve: one for each tenth of a percent, finer than a line is thick."""
 
-_LONGEST: Final = 55
 _BARS, _DOTS = 12, 4_000
 """The most bars of a tornado, and dots of a scatter."""
 
 _STEPS, _NAMES = 3, 8
 """Steps between dates or amounts of money, and texts, that an axis has room for."""
-
-_TITLE: Final[Mapping[str, Any]] = {
-    "loc": "left",
-    "color": INK,
-    "fontsize": 10,
-    "fontweight": "bold",
-    "parse_math": False,
-}
 
 Floats = NDArray[np.float64]
 
@@ -171,7 +165,7 @@ def _histogram(axes: Axes, simulation: RunResult, name: str | None) -> None:
 def _cumulative(axes: Axes, simulation: RunResult, name: str | None) -> None:
     each = _number(simulation, name, "cumulative curve")
     _draw_cumulative(axes, each, simulation)
-    axes.set_title(f"{_heading(each)}: cumulative", **_TITLE)
+    axes.set_title(f"{_heading(each)}: cumulative", **TITLE)
 
 
 def _tornado(axes: Axes, simulation: RunResult, name: str | None) -> None:
@@ -183,15 +177,13 @@ def _tornado(axes: Axes, simulation: RunResult, name: str | None) -> None:
     if not bars or base is None:
         hint = "Look at the base case: xlmc check says which cell is an error there"
         raise SimulationError(f"{each.answer.name!r} has no number at the base case", hint=hint)
-    lows, highs = (np.array([getattr(bar, end) for bar in bars], float) - base for end in ("low", "high"))
-    places = np.arange(len(bars))[::-1]
-    axes.barh(places, lows, left=base, color=LIGHT, label="at the 10th percentile of the assumption")
-    axes.barh(places, highs, left=base, color=DARK, label="at its 90th percentile")
-    axes.axvline(base, color=INK, linewidth=1.0)
-    axes.set_yticks(places, [_short(bar.assumption) for bar in bars], parse_math=False)
-    axes.set_title(f"{_heading(each)}: one assumption at a time, no filter", **_TITLE)
-    axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), fontsize=8, frameon=False, ncols=2)
-    _plain(axes, each.answer.units or "value")
+    spans = (
+        Bar(bar.assumption, ((base, float(bar.low or 0.0), "light"), (base, float(bar.high or 0.0), "dark")))
+        for bar in bars
+    )
+    title = f"{_heading(each)}: one assumption at a time, no filter"
+    across = f"{each.answer.units or 'value'} (light: with the assumption at its 10th percentile, dark: at its 90th)"
+    draw_on(axes, Chart(title, across, Bars(tuple(spans)), title))
     _write_numbers(axes.xaxis, each)
 
 
@@ -211,11 +203,11 @@ def _scatter(axes: Axes, simulation: RunResult, name: str | None) -> None:
     if not ranks:
         raise SimulationError(f"no assumption was drawn that {each.answer.name!r} could follow", hint="Run more trials")
     most = max(ranks, key=lambda other: abs(ranks[other]))
-    axes.plot(draws[most][:_DOTS], answer[:_DOTS], ".", color=DARK, markersize=2.5, alpha=0.5)
     units = next(a.units for a in simulation.model.assumptions if a.name == most)
-    axes.set_ylabel(", ".join(filter(None, (each.name, each.answer.units))), parse_math=False)
-    axes.set_title(f"{_heading(each)}: rank correlation {styled_text(ranks[most], '.2f')}", **_TITLE)
-    _plain(axes, ", ".join(filter(None, (most, units))))
+    cloud = Line("Accepted trials", tuple(zip(draws[most][:_DOTS].tolist(), answer[:_DOTS].tolist(), strict=True)))
+    upwards = ", ".join(filter(None, (each.name, each.answer.units)))
+    title = f"{_heading(each)}: rank correlation {styled_text(ranks[most], '.2f')}"
+    draw_on(axes, Chart(title, ", ".join(filter(None, (most, units))), Lines((), upwards, cloud=cloud), title))
     _write_numbers(axes.yaxis, each)
 
 
@@ -236,9 +228,9 @@ def _trend(axes: Axes, simulation: RunResult, name: str | None) -> None:
     axes.set_xticks(places, [textwrap.fill(each.name, 18) for each in rows], parse_math=False)
     axes.use_sticky_edges = False
     axes.margins(y=0.05)
-    axes.set_title("Central ranges", **_TITLE)
+    axes.set_title("Central ranges", **TITLE)
     axes.legend(loc="best", fontsize=8, frameon=False)
-    _plain(axes, "")
+    dress(axes, "")
     axes.set_ylabel(first.answer.units or "value", parse_math=False)
     _write_numbers(axes.yaxis, first)
 
@@ -260,15 +252,13 @@ def _before_after(axes: Axes, simulation: RunResult, name: str | None) -> None:
         raise _nothing()
     weights = None if simulation.weighting is None else simulation.weighting.weights[: simulation.kept_inputs]
     chosen = names[name_key(name)] if name else max(simulation.inputs, key=lambda each: _moved(simulation, each))
-    before, after = simulation.prior[chosen], simulation.inputs[chosen]
-    edges = np.histogram_bin_edges(before[np.isfinite(before)], 40).tolist()
-    axes.hist(before, edges, density=True, color=LIGHT, label="before the filters")
-    axes.hist(after, edges, density=True, weights=weights, histtype="step", color=INK, linewidth=1.6, label="accepted")
+    found = shapes(simulation.prior[chosen], simulation.inputs[chosen], weights)
+    if found is None:
+        raise SimulationError(f"the draws of {chosen!r} have no shape", hint="They are one value, or too far apart")
+    edges, before, accepted = (tuple(map(float, each)) for each in (found.edges, found.before, found.accepted))
     units = next(a.units for a in simulation.model.assumptions if a.name == chosen)
-    axes.set_title(f"{_short(chosen)}, before and after the filters", **_TITLE)
-    axes.set_ylabel("Density")
-    axes.legend(loc="best", fontsize=8, frameon=False)
-    _plain(axes, units or "value")
+    title = f"{short(chosen)}, before and after the filters"
+    draw_on(axes, Chart(title, units or "value", Shape(edges, before, accepted), title))
     _write_form(axes.xaxis, simulation.model.input_forms.get(chosen, PLAIN))
 
 
@@ -287,17 +277,7 @@ def _drawing(axes: Axes, simulation: RunResult, name: str | None) -> None:
     if chart is None:
         hint = "Its chart of points and lines marks the base case by one point of two assumptions or forecasts"
         raise SimulationError("the workbook has no drawing that trials can be drawn over", hint=hint)
-    assert isinstance(chart.data, Lines)
-    for line in chart.data.all:
-        across, upwards = zip(*((point[0], point[1]) for point in line.points), strict=True)
-        if line is chart.data.cloud:
-            axes.plot(across, upwards, ".", color=INK, markersize=2.5, alpha=0.5, label=line.name)
-        else:
-            axes.plot(across, upwards, label=line.name)
-    axes.set_title("Trials over the chart", **_TITLE)
-    axes.legend(loc="best", fontsize=8, frameon=False)
-    _plain(axes, chart.across)
-    axes.set_ylabel(chart.data.upwards, parse_math=False)
+    draw_on(axes, replace(chart, title="Trials over the chart"))
 
 
 KINDS: Final[Mapping[str, Callable[[Axes, RunResult, str | None], None]]] = {
@@ -310,19 +290,6 @@ KINDS: Final[Mapping[str, Callable[[Axes, RunResult, str | None], None]]] = {
     "drawing": _drawing,
 }
 """Kind of picture -> what draws it."""
-
-
-def _short(name: str) -> str:
-    return textwrap.shorten(name, _LONGEST, placeholder="…")
-
-
-def _plain(axes: Axes, below: str) -> None:
-    """Dress axes alike: a grid behind, no frame, small labels."""
-    axes.set_xlabel(below, parse_math=False)
-    axes.grid(color=GRID, linewidth=0.6)
-    axes.set_axisbelow(True)
-    axes.spines[["top", "right"]].set_visible(False)
-    axes.tick_params(colors=INK, labelsize=9)
 
 
 def _title(simulation: RunResult) -> str:
@@ -371,7 +338,7 @@ def _draw_histogram(axes: Axes, each: Drawn) -> None:
         mean = float(_near(each, np.array(answer.mean.value)))
         text = f"mean: {answer_text(answer)}".replace("$", r"\$")
         axes.vlines(mean, 0.0, 1.05 * most, color=INK, linewidth=1.2, label=text)
-    axes.set_title(_heading(each), **_TITLE)
+    axes.set_title(_heading(each), **TITLE)
     per = "" if bins.names is not None else f" per {bins.form.width(bins.width)}"
     per += f" {answer.units}" if per and answer.units else ""
     axes.set_ylabel(f"Trials{per}", parse_math=False)
@@ -421,12 +388,12 @@ def _near(each: Drawn, values: Floats) -> Floats:
 
 
 def _heading(each: Drawn) -> str:
-    return _short(each.name)
+    return short(each.name)
 
 
 def _dress(axes: Axes, each: Drawn, edges: Floats) -> None:
     axes.set_xlim(float(edges[0]), float(edges[-1]))
-    _plain(axes, each.answer.units or "value")
+    dress(axes, each.answer.units or "value")
     if each.answer.is_share:
         ends = each.bins.edges + 0.5 * each.bins.width
         named = [(x, text) for x, text in zip(ends.tolist(), each.bins.labels, strict=True) if text]

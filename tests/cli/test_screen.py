@@ -4,6 +4,7 @@ import json
 import re
 
 import pytest
+from workbook_files import workbook_of
 
 from xlmc.analysis.studies import screening
 
@@ -104,3 +105,34 @@ def test_a_forecast_that_is_not_there(xlmc, case_study):
     outcome = xlmc("screen", case_study, "--forecast", "Speed*")
     assert outcome.code == 2
     assert "No forecast has the name 'Speed*'" in outcome.err
+
+
+def test_of_many_forecasts_one_table_is_printed_and_all_are_written(xlmc, tmp_path):
+    """Of five forecasts the terminal names what moves each most; the file and --forecast have every change."""
+    names = [f"f{number}" for number in range(1, 6)]
+    sheets = {
+        "Inputs": [
+            ["Name", "Value", "Low", "High", "Distribution"],
+            *([n, 2, 1, 3, "Uniform"] for n in ("wide", "narrow")),
+        ],
+        "Model": [[f"={number}*Inputs!B2+Inputs!B3/2" for number in range(1, 6)]],
+        "Wanted": [
+            ["Name", "Cell"],
+            *([name, f"=Model!{letter}1"] for name, letter in zip(names, "ABCDE", strict=True)),
+        ],
+    }
+    book = tmp_path / "five.xlsx"
+    workbook_of(sheets, {"xlmc_assumptions": "Inputs!A1:E3", "xlmc_forecasts": "Wanted!A1:B6"}).save(book)
+    page = tmp_path / "found.html"
+    outcome = xlmc("screen", book, "-n", "200", "-o", page)
+    assert outcome.code == 0
+    _, _, table = outcome.out.partition("What moves each forecast most")
+    rows = [line.split()[:2] for line in table.splitlines() if re.match(r" *f\d ", line)]
+    assert rows == [[name, "wide"] for name in names]
+    assert "the 2 changes moves in each of the 5 forecasts" in " ".join(table.split())
+    assert "Tolerances: those of the 5 forecasts, a tenth of the SD for numbers, stand in the files" in " ".join(
+        table.split()
+    )
+    assert ": what each moves most" not in outcome.out
+    assert page.read_text(encoding="utf-8").count(": what each moves most") >= len(names)
+    assert xlmc("screen", book, "-n", "200", "--forecast", "f3").out.count(": what each moves most") == 1

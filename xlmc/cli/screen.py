@@ -86,7 +86,7 @@ def screen(
     from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import step_line
     from xlmc.montecarlo.model.loading import load
-    from xlmc.outputs.studies.screen import screen_report
+    from xlmc.outputs.studies.screen import printed, screen_report
     from xlmc.outputs.study_report import Files
 
     model = load(book, functions=functions)
@@ -113,6 +113,6 @@ def screen(
         report,
         files.writers(report),
         as_json,
-        [f"{report.below.partition(':')[0]}: what it could do without", *report.blocks],
+        [f"{report.below.partition(':')[0]}: what it could do without", *printed(found)],
     )
     conclude(written, found.run, ended=found.ended)

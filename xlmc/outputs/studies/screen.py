@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 
 from xlmc.analysis.studies.steps import ended_early
 
-__all__ = ["screen_report"]
+__all__ = ["printed", "screen_report"]
+
+_MOST_IN_FULL = 4
+"""Forecasts for each of which the terminal shows a table of every change; of more it shows one table."""
 
 
 def screen_report(found: Screening) -> StudyReport:
@@ -30,7 +33,26 @@ def screen_report(found: Screening) -> StudyReport:
     return StudyReport(title, below, blocks, "Screening", partial(_as_json, found), run)
 
 
+def printed(found: Screening) -> tuple[Block, ...]:
+    """Return what the terminal shows: the report, but of many forecasts one table instead of one for each."""
+    from xlmc.outputs.document.parts import blocks_of
+
+    every = [*found.single, *found.groups, *found.sets, *found.filters]
+    if not every or len(found.tolerances) <= _MOST_IN_FULL:
+        return blocks_of([*_verdicts(found), *_tables(found), *_meaning(found)])
+    return blocks_of(
+        [*_verdicts(found), *_of_changes(found), *_of_every_forecast(found, every), *_meaning(found, in_full=False)]
+    )
+
+
 def _tables(found: Screening) -> Iterator[Block]:
+    yield from _of_changes(found)
+    if found.single or found.groups or found.sets or found.filters:
+        for name in found.tolerances:
+            yield _of_forecast(found, name)
+
+
+def _of_changes(found: Screening) -> Iterator[Block]:
     sizes = {each.name: _size(each.size) for each in found.expected}
     expected = [sizes[cost.names[0]] for cost in found.single]
     each = "Each other assumption" if found.at_once else "Each assumption"
@@ -47,9 +69,6 @@ def _tables(found: Screening) -> Iterator[Block]:
         held = " with the assumptions named above held" if found.joint else ""
         what = "filter and item of evidence" if _has_evidence(found) else "filter"
         yield _table(found, f"Each {what} left out{held}", found.filters, ("Left out", _names(found.filters)))
-    if found.single or found.groups or found.sets or found.filters:
-        for name in found.tolerances:
-            yield _of_forecast(found, name)
 
 
 def _table(found: Screening, title: str, costs: Sequence[Cost], *first: tuple[str, Sequence[str]]) -> Table:
@@ -96,24 +115,40 @@ def _size(tolerances: float) -> str:
 
 def _of_forecast(found: Screening, name: str) -> Table:
     """Make a table of the number of a forecast that each change moves most, measured in its tolerance."""
-    from xlmc.analysis.studies.comparison.verdicts import amount
     from xlmc.outputs.document.parts import Table
 
     units = found.run[name].definition.units
-    rows = []
-    for cost in (*found.single, *found.groups, *found.sets, *found.filters):
-        number, size = _most_moved(found, cost, name)
-        change = dict(cost.forecasts[name].changes)[number]
-        rows.append(
-            (
-                ", ".join(cost.names),
-                number,
-                amount(number, change.difference, cost.forecasts[name].form),
-                "" if name in cost.lost else _size(size),
-            )
-        )
+    rows = tuple(_moved(found, cost, name) for cost in (*found.single, *found.groups, *found.sets, *found.filters))
     title = f"{name}{f', {units}' if units else ''}: what each moves most"
-    return Table(title, ("Held or left out", "Number", "Moves by", "Tolerances"), tuple(rows), (2, 3))
+    return Table(title, ("Held or left out", "Number", "Moves by", "Tolerances"), rows, (2, 3))
+
+
+def _moved(found: Screening, cost: Cost, name: str) -> tuple[str, str, str, str]:
+    """Return what was changed, the number of a forecast that it moves most, by how much and how many tolerances."""
+    from xlmc.analysis.studies.comparison.verdicts import amount
+
+    number, size = _most_moved(found, cost, name)
+    each = cost.forecasts[name]
+    moved = amount(number, dict(each.changes)[number].difference, each.form)
+    return ", ".join(cost.names), number, moved, "" if name in cost.lost else _size(size)
+
+
+def _of_every_forecast(found: Screening, costs: Sequence[Cost]) -> Iterator[Block | str]:
+    """Yield a table with the change that moves each forecast most, and where all changes stand."""
+    from xlmc.montecarlo.number_text import count_text
+    from xlmc.outputs.document.parts import Table
+
+    rows = []
+    for name in found.tolerances:
+        answered = [cost for cost in costs if name not in cost.lost] or costs
+        most = max(answered, key=lambda cost: _most_moved(found, cost, name)[1])
+        rows.append((name, *_moved(found, most, name)))
+    heads = ("Forecast", "Held or left out", "Number", "Moves by", "Tolerances")
+    yield Table("What moves each forecast most", heads, tuple(rows), (3, 4))
+    yield (
+        f"What each of the {count_text(len(costs))} changes moves in each of the {count_text(len(rows))} forecasts is "
+        "written with -o found.xlsx (or .html, .pdf, .docx), and printed for a few forecasts with --forecast."
+    )
 
 
 def _most_moved(found: Screening, cost: Cost, name: str) -> tuple[str, float]:
@@ -230,7 +265,7 @@ def _ends_text(free: Sequence[str]) -> str:
     )
 
 
-def _meaning(found: Screening) -> Iterable[str]:
+def _meaning(found: Screening, *, in_full: bool = True) -> Iterable[str]:
     from xlmc.montecarlo.number_text import count_text, number_text
 
     if found.constant:
@@ -238,7 +273,11 @@ def _meaning(found: Screening) -> Iterable[str]:
     if found.dropped:
         yield f"Formula cells that then are not needed: {', '.join(map(str, found.dropped))}."
     yield f"Of {found.cells} formula cells that the book needs, {found.varying} then vary."
-    tolerances = "; ".join(f"{name} {_tolerance(found, name)}" for name in found.tolerances)
+    named = [name for name, (_, stated) in found.tolerances.items() if stated or in_full]
+    tolerances = "; ".join(f"{name} {_tolerance(found, name)}" for name in named)
+    if len(named) < len(found.tolerances):
+        whose = "those of the others" if named else f"those of the {count_text(len(found.tolerances))} forecasts"
+        tolerances += f"{'; ' if named else ''}{whose}, a tenth of the SD for numbers, stand in the files"
     accepted = (
         f"; acceptance {number_text(100 * found.acceptance_tolerance)} % of itself" if found.run.model.filters else ""
     )

@@ -214,6 +214,12 @@ def test_changes_of_nothing_are_explained(make, limit, unmoved):
     )
     (moved,) = sensitivities(run).filter_limits
     assert ("nothing moves" in moved_caption(moved)) == unmoved
+    packed = packed_sheets(run, "Filter limits")
+    with zipfile.ZipFile(io.BytesIO(packed)) as package:
+        charts = [package.read(n).decode() for n in package.namelist() if n.startswith("xl/charts/chart")]
+    assert any("Change of each mean" in xml for xml in charts) != unmoved  # an empty chart says nothing
+    texts = [str(cell.value) for row in openpyxl.load_workbook(io.BytesIO(packed))["Filter limits"] for cell in row]
+    assert any("so nothing moves" in text for text in texts) == unmoved
 
 
 def test_what_is_noise_reads_noise_in_the_table(make, opened):

@@ -66,8 +66,12 @@ def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) ->
         page.wide(sentence, "remark", CHARTED)
     forecasts = {each.forecast: each for each in found.forecasts}
     page.row += 1
-    top, drawn = page.row, sum(bool(limit.points) for limit in found.filter_limits)
-    for _ in range(0, drawn, 2):
+    for limit in found.filter_limits:
+        if limit.points and nothing_moves(limit):
+            page.wide(_brief(limit), "remark", CHARTED)
+    drawn = [limit for limit in found.filter_limits if limit.points and not nothing_moves(limit)]
+    top = page.row
+    for _ in range(0, len(drawn), 2):
         page.may_begin()
         page.row += _FIRST_ROWS + 1
     printed = page.row
@@ -75,7 +79,7 @@ def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) ->
     for limit in found.filter_limits:
         charts += _write_limit(page, book, limit, forecasts)
     page.row = top
-    place_rows(page, charts, _FIRST_ROWS, [_brief(limit) for limit in found.filter_limits if limit.points])
+    place_rows(page, charts, _FIRST_ROWS, [_brief(limit) for limit in drawn])
     page.set_up_printing(name, printed=printed, columns=(0, CHARTED))
 
 
@@ -100,7 +104,7 @@ def _write_limit(
     bottom, page.row = page.row, top
     place_rows(page, [_acceptance_chart(book, limit, acceptance)])
     page.row = bottom
-    return [_moved_chart(book, limit, tables, forecasts)] if tables else []
+    return [_moved_chart(book, limit, tables, forecasts)] if tables and not nothing_moves(limit) else []
 
 
 def _moved_chart(

@@ -138,8 +138,14 @@ def _answer(forecast: ForecastSensitivity, limit: float, answer: LimitAnswer, no
     )
 
 
-def limit_figures(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> Iterator[Figure]:
-    """Yield a chart for the forecasts of each unit and kind: changes in different units have no common axis."""
+def limit_figures(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> Iterator[Block]:
+    """Yield a chart for the forecasts of each unit and kind: changes in different units have no common axis.
+
+    Where nothing moves a sentence takes their place.
+    """
+    if still := nothing_moves(limit):
+        yield Paragraph(still.strip())
+        return
     alike: dict[tuple[str, Form], list[int]] = {}
     for index, slope in enumerate(limit.slopes):
         each = forecasts[slope.forecast]

@@ -23,6 +23,7 @@ __all__ = [
     "BlockMemory",
     "BlockRunner",
     "Column",
+    "Compilable",
     "Evaluator",
     "Linear",
     "Program",
@@ -162,6 +163,14 @@ class RunsWholeBlocks(Protocol):
             draw: makes the draws of a block from its first trial on, `(block,)` each.
             linear: another way to make them, if each is an offset plus a factor times a uniform; None if not.
         """
+
+
+@runtime_checkable
+class Compilable(Protocol):
+    """A body of a function that native code may replace."""
+
+    def compiled(self) -> Callable[..., Value] | None:
+        """Return what gives the same values, to the last bit, by native code; None if there is no such code."""
 
 
 class Program(Protocol):

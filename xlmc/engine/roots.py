@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from xlmc.data_classes import dataclass
 
-__all__ = ["SCANNED", "Roots", "find_roots"]
+__all__ = ["CONVERGED", "EPSILON", "INTERPOLATIONS", "OWN_STEPS", "SCANNED", "Roots", "find_roots"]
 
 SCANNED: Final = 16
 """Parts of the range that are looked at; two roots within one part cancel, and are not seen."""
@@ -29,9 +29,12 @@ _MOST_ROUNDS: Final = 200
 _JUMP: Final = 1e-3
 """A function that is still this large at a root, as a share of its values at both ends of the bracket, jumps there."""
 
-_SECANTS, _FIRST_LOOK = 12, 3
-_CONVERGED: Final = 1e-9
-_EPSILON: Final = float(np.finfo(np.float64).eps)
+INTERPOLATIONS: Final = 8
+OWN_STEPS: Final = 2
+"""Steps before one whose three points are steps, and none an end of the bracket."""
+
+CONVERGED: Final = 1e-9
+EPSILON: Final = float(np.finfo(np.float64).eps)
 
 _TINY: Final = 2.0**-1000
 
@@ -113,20 +116,27 @@ def _scan(
     """Look at the range of some trials, None for all: the brackets, and the points where the function is exactly 0."""
     found: list[tuple[Any, ...]] = []
     numbers = np.arange(low.size) if trials is None else trials
-    left, before = low, function(low, trials)
+    width = high - low
+    left, at, before = low, np.empty(low.size), function(low, trials)
     zeros = [(numbers[before == 0.0], low[before == 0.0])]
     positive = before > 0.0
     for part in range(1, SCANNED + 1):
-        at = high if part == SCANNED else low + (high - low) * (part / SCANNED)
+        if part == SCANNED:
+            at[:] = high
+        else:
+            np.add(low, np.multiply(width, part / SCANNED, out=at), out=at)
         values = function(at, trials)
-        if not values.all():
-            zeros.append((numbers[values == 0.0], at[values == 0.0]))
-        above = values > 0.0
+        above, negative = values > 0.0, values < 0.0
+        exact = above == negative
+        if exact.any():
+            exact &= values == 0.0  # and not where it has no number
+            zeros.append((numbers[exact], at[exact]))
         here = np.flatnonzero(above != positive)
         if here.size:
             here = here[np.sign(before[here]) * np.sign(values[here]) < 0.0]  # none of a zero, and of no number
             found.append((numbers[here], left[here], at[here], before[here], values[here]))
-        left, before, positive = at, values, above
+        left, at = at, np.empty(low.size) if left is low else left
+        before, positive = values, above
     found = found or [(numbers[:0], *[low[:0]] * 4)]
     where, *columns = map(np.concatenate, zip(*found, strict=True))
     trials_of_zeros, points = map(np.concatenate, zip(*zeros, strict=True))
@@ -134,30 +144,51 @@ def _scan(
 
 
 def _solve(function: Function, brackets: _Brackets) -> tuple[Floats, Floats]:
-    """Return the root in each bracket, `(m,)`, and the function there: by secants, and else by narrowing.
+    """Return the root in each bracket, `(m,)`, and the function there: by interpolation, and else by narrowing.
 
-    A secant's end is taken only where the step to it was one of the last digits, and the function has become far
-    smaller than at both ends.
+    Each step is the value at 0 of the quadratic through the inverse of the last three points, and no smaller than some
+    last digits. A root is taken where the function has become far smaller than at both ends, and changed its sign over
+    such a smallest step; or where all three points are steps, the last one is c and the one before it C, and so the
+    next one about c²/C, or less, if this and some more is less than the last digit.
     """
-    trials, a, b, fa, fb = (getattr(brackets, key) for key in _Brackets.__slots__)
+    trials, low, high, f0, f1 = (getattr(brackets, key) for key in _Brackets.__slots__)
+    if not trials.size:
+        return low, low
     roots, remainder = np.empty(trials.size), np.empty(trials.size)
-    left, small = np.arange(trials.size), _CONVERGED * np.minimum(np.abs(fa), np.abs(fb))
-    for step in range(_SECANTS):
-        if not left.size:
-            return roots, remainder
-        x = b - fb * (b - a) / (fb - fa)
+    left, small = np.arange(trials.size), CONVERGED * np.minimum(np.abs(f0), np.abs(f1))
+    x1, before = high, high - low
+    slope = before / (f1 - f0)
+    x = x1 - f1 * slope
+    for step in range(INTERPOLATIONS):
+        np.fmin(np.fmax(x, low, out=x), high, out=x)
         fx = function(x, trials)
-        if step >= _FIRST_LOOK:
-            done = ((np.abs(x - b) <= 4.0 * _EPSILON * np.abs(x)) & (np.abs(fx) <= small)) | (fx == 0.0)
-            if done.any():
-                at = left[done]
-                roots[at], remainder[at] = x[done], fx[done]
+        moved = x - x1
+        slope_before, slope = slope, moved / (fx - f1)
+        bend = np.subtract(slope, slope_before, out=slope_before)
+        bend /= fx - f0
+        change = np.subtract(slope, np.multiply(bend, f1, out=bend), out=bend)
+        change *= fx
+        size, last, close = np.abs(change), EPSILON * np.abs(x), np.abs(fx) <= small
+        if close.any():
+            done = (np.abs(moved) <= 4.0 * last) & ((fx > 0.0) != (f1 > 0.0))
+            if step >= OWN_STEPS:
+                done |= 16.0 * size * size <= last * before
+            done |= fx == 0.0
+            done &= close
+            here = np.flatnonzero(done)
+            if here.size:
+                at = left[here]
+                most = np.where(fx[here] == 0.0, 0.0, np.abs(moved[here]))
+                remainder[at] = fx[here]
+                roots[at] = x[here] - np.fmin(np.fmax(change[here], -most), most)
+                if here.size == left.size:
+                    return roots, remainder
                 on = np.flatnonzero(~done)
-                left, trials, small, a, b, fa, fb, x, fx = (e[on] for e in (left, trials, small, a, b, fa, fb, x, fx))
-        crossed, part = (fx > 0.0) != (fb > 0.0), 1.0 - fx / fb
-        part[~(part > 0.0)] = 0.5
-        a, fa = np.where(crossed, b, a), np.where(crossed, fb, fa * part)
-        b, fb = x, fx
+                left, trials, small, low, high = (e[on] for e in (left, trials, small, low, high))
+                x, fx, x1, f1, slope, change, size, last = (e[on] for e in (x, fx, x1, f1, slope, change, size, last))
+        np.copysign(np.maximum(size, 2.0 * last, out=size), change, out=change)
+        x1, f0, f1, before = x, f1, fx, size
+        x = x1 - change
     if left.size:
         columns = (getattr(brackets, key)[left] for key in _Brackets.__slots__)
         roots[left], remainder[left] = _narrow(function, _Brackets(*columns))
@@ -165,7 +196,7 @@ def _solve(function: Function, brackets: _Brackets) -> tuple[Floats, Floats]:
 
 
 def _narrow(function: Function, brackets: _Brackets) -> tuple[Floats, Floats]:
-    """Narrow brackets until their ends are neighbours, and give the better end of each, and its value.
+    """Narrow brackets until their ends are neighbours, and give the better end of each, and the value at the worse one.
 
     A bracket in which the function has no number somewhere gives NaN.
     """
@@ -185,11 +216,13 @@ def _narrow(function: Function, brackets: _Brackets) -> tuple[Floats, Floats]:
         nearer = np.abs(f1) < np.abs(f2)
         best, value = np.where(nearer, x1, x2), np.where(nearer, f1, f2)
         width = np.abs(x2 - x1)
-        least = (2.0 * _EPSILON * np.abs(best) + _TINY) / width
+        least = (2.0 * EPSILON * np.abs(best) + _TINY) / width
         done = (least > 0.5) | (value == 0.0) | ~(width > 0.0)
         lost = np.isnan(f)
         if (done | lost).any():
-            found[left[done & ~lost]], remainder[left[done & ~lost]] = best[done & ~lost], value[done & ~lost]
+            ended = done & ~lost
+            worse = np.where(value == 0.0, 0.0, np.where(nearer, f2, f1))  # of a jump, one end may be near 0 by chance
+            found[left[ended]], remainder[left[ended]] = best[ended], worse[ended]
             on = ~(done | lost)
             left, x1, f1, x2, f2, x3, f3, least = (e[on] for e in (left, x1, f1, x2, f2, x3, f3, least))
         xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)

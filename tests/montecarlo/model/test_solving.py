@@ -78,6 +78,36 @@ def test_engines_and_blocks_give_the_same_bits(book):
 
 
 @pytest.mark.parametrize(
+    ("formula", "low", "high", "to", "by_loop"),
+    [
+        ("=Inputs!B2*Inputs!B6^2+Inputs!B6", 0, 100, "=Inputs!B3", 1.0),
+        ("=Inputs!B2*Inputs!B6-1", 0, 100, "=Inputs!B3", 1.0),
+        ("=Inputs!B6/Inputs!B2", 0, 100, "=Inputs!B3", 0.45),  # not all trials have a solution
+        ("=Inputs!B6^2-2*Inputs!B6*Inputs!B2+Inputs!B2^2", -10, 10, 2, 0.0),  # all have two
+        ("=Inputs!B6^2-2*Inputs!B6*Inputs!B2+Inputs!B2^2", "=Inputs!B2", 50, 4, 0.9),
+        ("=IF(Inputs!B6<Inputs!B2,Inputs!B6-Inputs!B2,3*(Inputs!B6-Inputs!B2))", 0, 50, 0.5, 1.0),
+        ("=IF(Inputs!B6<20,Inputs!B6-20.3,Inputs!B6)", 0, 50, "=Inputs!B2-2", 0.25),  # some jump past it
+        ("=SQRT(Inputs!B6-Inputs!B2)", 0, 50, 5, 0.0),  # an error at the low end
+        ("=Inputs!B6*SQRT(Inputs!B2-1.9)", 0, 100, 10, 0.0),  # errors in half of the trials
+        ("=MAX(Inputs!B6-10,Inputs!B6*Inputs!B2)-MIN(Inputs!B3,50)", -100, 100, 0, 0.9),
+        ("=SUM(Inputs!B2:B3,Inputs!B6)%", -100, 100, 1, 0.9),
+        ("=(Inputs!B6-Inputs!B2)*ABS(Inputs!B6-Inputs!B2)", 0, 10, 0, 0.0),  # flat at its root
+    ],
+)
+def test_native_code_finds_the_same_bits(book, monkeypatch, formula, low, high, to, by_loop):
+    """And leaves to NumPy what it cannot tell; `by_loop` is the least share of trials that it solves."""
+    from xlmc.engine.llvm.root_loop import RootLoop
+
+    solved, call = [], RootLoop.__call__
+    monkeypatch.setattr(RootLoop, "__call__", lambda *given: solved.append(call(*given)) or solved[-1])
+    model = xlmc.load(book(["x", "=Model!B2", to, "=Inputs!B6", low, high, None], formula=formula))
+    numpy, native = (model.simulate(20_000, seed=2, engine=engine) for engine in ("numpy", "jit"))
+    assert np.array_equal(numpy.forecasts["x"], native.forecasts["x"], equal_nan=True)
+    assert numpy.faults == native.faults
+    assert np.mean(np.concatenate([found for _, found in solved or [(None, [False])]])) >= by_loop
+
+
+@pytest.mark.parametrize(
     ("row", "code", "words"),
     [
         ([*ROW[:4], 0, 4, None], "#N/A", "no value from 0 to 4 makes Model!B2 equal to Solve!C2"),

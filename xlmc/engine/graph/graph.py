@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from functools import partial
 from typing import Any, Final, NamedTuple, assert_never
@@ -86,6 +86,12 @@ class Dag:
         """Another process gets only the nodes and their cells: it evaluates them and adds none."""
         parts = self.nodes, self.types, self.sizes, self.folded, self.hosts, self.ends
         return _of_nodes, (self._date1904, *parts)
+
+    def with_inputs(self, names: Mapping[int, str]) -> Dag:
+        """Return the same nodes, some of them as inputs by these names. It evaluates them, and adds none."""
+        nodes = [Input(names[node]) if node in names else each for node, each in enumerate(self.nodes)]
+        folded = {node: each for node, each in self.folded.items() if node not in names}
+        return _of_nodes(self._date1904, nodes, self.types, self.sizes, folded, self.hosts, self.ends)
 
     def host_ends(self, cell: Cell) -> None:
         """Note that all nodes made since the last such note were made for the formula of this cell."""

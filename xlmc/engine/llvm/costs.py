@@ -10,6 +10,7 @@ from __future__ import annotations
 from collections.abc import Container, Iterable
 from typing import Final
 
+from xlmc.engine.engine import Compilable
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.nodes import Apply, Constant, Input, Node, Range, Select
 from xlmc.excel.functions import Kind
@@ -41,6 +42,9 @@ _LOST_BY_UFUNC: Final = 5.0
 _LOST_BY_BODY: Final = 7.0
 """Outside of loops, by any other function: it takes memory of its own, too."""
 
+_SAVED_BY_COMPILED: Final = 100.0
+"""By native code for the body of a function: it searches for roots."""
+
 _WITHOUT_COST: Final = (Constant, Input, Range)
 
 
@@ -57,7 +61,9 @@ def loops_pay(dag: Dag, nodes: Iterable[int], in_loops: Container[int]) -> bool:
         node = dag.nodes[node_id]
         if isinstance(node, _WITHOUT_COST):
             continue
-        if node_id in in_loops:
+        if isinstance(node, Apply) and isinstance(node.function.body, Compilable):
+            inside += _SAVED_BY_COMPILED
+        elif node_id in in_loops:
             inside += _saved(node)
         else:
             outside += _lost(dag, node_id)

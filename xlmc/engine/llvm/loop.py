@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, Final, NamedTuple
 
 from llvmlite import ir
@@ -13,7 +13,7 @@ from xlmc.engine.llvm.loop_rules import LoopRule, Operand
 from xlmc.engine.llvm.machine import Machine, NativeLoop, while_flushing
 from xlmc.excel.functions import Kind
 
-__all__ = ["SIDE_BY_SIDE", "Load", "compile_loop"]
+__all__ = ["SIDE_BY_SIDE", "Load", "compile_loop", "loop_over_trials", "write_entry"]
 
 _NAME: Final = "over_trials"
 SIDE_BY_SIDE: Final = 2
@@ -59,7 +59,7 @@ def compile_loop(
     """
     module = ir.Module()
     inner = _inner(dag, module, machine, rules, loads, stores, numbers, side_by_side)
-    _entry(module, inner, machine)
+    write_entry(module, inner, machine)
     return machine.native(module, _NAME)
 
 
@@ -127,6 +127,39 @@ def _inner(
     return function
 
 
+def loop_over_trials(
+    module: ir.Module, arrays: Sequence[Kind], trial: Callable[[ir.IRBuilder, Sequence[Any], Any], None]
+) -> ir.Function:
+    """Write a loop over trials that calls nothing, of arrays that do not overlap; it always gives 0.
+
+    Args:
+        module: it is written to.
+        arrays: doubles or truth values.
+        trial: emits the computation of one trial, from the arrays' pointers and its number.
+    """
+    types = [*map(_pointer_type, arrays), _LONG]
+    function = ir.Function(module, ir.FunctionType(_LONG, types), "loop")
+    function.linkage = "internal"
+    function.attributes.add("noinline")
+    for argument in function.args[:-1]:
+        argument.add_attribute("noalias")
+    *pointers, n = function.args
+    builder = ir.IRBuilder(function.append_basic_block("entry"))
+    before, body, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
+    builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body, after)
+    builder.position_at_end(body)
+    i = builder.phi(_LONG)
+    trial(builder, pointers, i)
+    following = builder.add(i, _LONG(1), flags=["nuw", "nsw"])
+    i.add_incoming(_LONG(0), before)
+    i.add_incoming(following, body)
+    again = builder.cbranch(builder.icmp_signed("<", following, n), body, after)
+    again.set_metadata("llvm.loop", _interleaved(module, 1))
+    builder.position_at_end(after)
+    builder.ret(_LONG(0))
+    return function
+
+
 def _interleaved(module: ir.Module, side_by_side: int) -> Any:
     """Ask LLVM to compute so many vectors of trials side by side; with 0, one trial after another."""
     name, asked = ("interleave.count", ir.IntType(32)(side_by_side)) if side_by_side else ("vectorize.enable", _BIT(0))
@@ -140,7 +173,7 @@ def _load(builder: ir.IRBuilder, pointer: Any, i: Any) -> Any:
     return builder.icmp_unsigned("!=", value, _BYTE(0)) if value.type == _BYTE else value
 
 
-def _entry(module: ir.Module, inner: ir.Function, machine: Machine) -> None:
+def write_entry(module: ir.Module, inner: ir.Function, machine: Machine) -> None:
     """Write the function to call: it takes the arrays' addresses as one array."""
     function = ir.Function(module, ir.FunctionType(_LONG, [_BYTE.as_pointer().as_pointer(), _LONG]), _NAME)
     builder = ir.IRBuilder(function.append_basic_block("entry"))

@@ -8,16 +8,17 @@ from __future__ import annotations
 import ctypes
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.data_classes import dataclass
-from xlmc.engine.engine import Column, column_of
+from xlmc.engine.engine import Column, Compilable, column_of
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.node_values import evaluate_node, in_own_memory
-from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Range, Select
+from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select
 from xlmc.engine.llvm.loop import SIDE_BY_SIDE, Load, compile_loop
 from xlmc.engine.llvm.loop_rules import PLAIN, Operand
 from xlmc.engine.llvm.machine import Machine, NativeLoop
@@ -158,9 +159,10 @@ class Phase:
         ]
         self._last_read = stages.last_reads()
         outside = [() if isinstance(step, Loop) else step for step in self._steps]
-        self._plain = {
-            node: make_step(self._dag, node, 0) for nodes in outside for node in nodes if self._is_plain(node)
-        }
+        found = {node: _compiled(self._dag.nodes[node]) for nodes in outside for node in nodes}
+        self._native = {node: each for node, each in found.items() if each is not None}
+        plain = [node for node in found if node not in self._native and self._is_plain(node)]
+        self._plain = {node: make_step(self._dag, node, 0) for node in plain}
         self.slots = stages.slots(
             [
                 step.stores if isinstance(step, Loop) else tuple(node for node in step if node in self._plain)
@@ -239,7 +241,7 @@ class Phase:
         for node_id in nodes:
             if node_id in self._plain and self._run_plain(node_id, trials, memory):
                 continue
-            node = self._dag.nodes[node_id]
+            node = self._native.get(node_id, self._dag.nodes[node_id])
             assert isinstance(node, Apply | Select | IfErrorNode | Range)
             with np.errstate(all="ignore"):
                 known = {used: trials.value(used) for used in self._stages.reads[node_id]}
@@ -269,6 +271,14 @@ class Phase:
         # Loops read doubles there, one a trial.
         trials.arrays[node_id] = np.ascontiguousarray(np.broadcast_to(known[node_id], (trials.n,)), np.float64)
         return True
+
+
+def _compiled(node: Node) -> Node | None:
+    """Return a node with the native code of its function's body; None if it has none."""
+    if not isinstance(node, Apply) or not isinstance(node.function.body, Compilable):
+        return None
+    body = node.function.body.compiled()
+    return None if body is None else Apply(replace(node.function, body=body), node.arguments)
 
 
 def _side_by_side_alone(loops: Sequence[tuple[int, int]]) -> int:

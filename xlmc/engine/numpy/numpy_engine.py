@@ -295,4 +295,5 @@ def _gather(frame: Frame, node: int, buffer: int | None, survivors: NDArray[np.i
 def _column(found: Any, n: int) -> Column:
     if isinstance(found, Value):
         return column_of(found, n)
-    return Column(np.broadcast_to(found, (n,)))
+    known = isinstance(found, np.ndarray) and found.shape == (n,)
+    return Column(found if known else np.broadcast_to(found, (n,)))

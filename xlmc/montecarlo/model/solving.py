@@ -7,9 +7,9 @@ trial without a solution is `#N/A`, one with several `#NUM!`, unless the row say
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Target
 from xlmc.engine.graph.lowering import Lowering, lower_cells
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
+from xlmc.engine.passes.repeated import RepeatedProgram
 from xlmc.engine.roots import SCANNED, find_roots
 from xlmc.engine.roots import Function as Difference
 from xlmc.errors import DefinitionError, ErrorCode
@@ -31,12 +32,15 @@ from xlmc.montecarlo.definitions.definitions import Definitions, Parameter, Solv
 from xlmc.montecarlo.definitions.stating import Which
 from xlmc.montecarlo.number_text import number_text
 
+if TYPE_CHECKING:
+    from xlmc.engine.llvm.root_loop import RootLoop
+
 __all__ = ["Unknown", "fault_text", "unknown_of", "with_solved_cells"]
 
 Floats = NDArray[np.float64]
 
-_TOGETHER: Final = 1 << 14
-"""Trials that are solved at once."""
+_TOGETHER: Final = 3 << 12
+"""Trials that are solved at once: few enough for the cache, and for memory that the next ones use again."""
 
 _FINE: Final = 64
 """Into how many parts each part of a run's scan is divided at the base case, to see what the run would miss."""
@@ -55,7 +59,7 @@ class Unknown:
         inputs: the assumptions that either needs, in order.
     """
 
-    both: NumpyProgram
+    both: RepeatedProgram
     ends: NumpyProgram | None
     inputs: tuple[str, ...]
 
@@ -71,17 +75,13 @@ class Unknown:
 
         It has no number where the cell is an error, a text or blank.
         """
-        block = min(self.both.largest_block, max((values.size for values in given.values()), default=1 << 12))
-        evaluator = self.both.evaluator(block)
+        both = self.both.evaluated(given, max((values.size for values in given.values()), default=1 << 12))
 
         def difference(at: Floats, trials: NDArray[np.intp] | None) -> Floats:
-            found = np.empty(at.size)
-            for start in range(0, at.size, block):
-                part = slice(start, min(start + block, at.size))
-                these = part if trials is None else trials[part]
-                inputs = {_BY: at[part], **{name: values[these] for name, values in given.items()}}
-                value, to = evaluator.filters(inputs, part.stop - part.start)
-                np.subtract(value.as_floats(copy=False), to.as_floats(copy=False), out=found[part])
+            found, start = np.empty(at.size), 0
+            for value, to in both(at, trials):
+                np.subtract(value, to, out=found[start : start + value.size])
+                start += value.size
             return found
 
         return difference
@@ -96,6 +96,16 @@ class _Body:
 
     def __call__(self, *values: Value) -> Value:
         """Return the solutions; an error of an assumption is that error."""
+        return self._solved(values, None)
+
+    def compiled(self) -> Callable[..., Value] | None:
+        """See `Compilable`."""
+        from xlmc.engine.llvm.root_loop import root_loop
+
+        loop = root_loop(self.unknown.both)
+        return None if loop is None else lambda *values: self._solved(values, loop)
+
+    def _solved(self, values: Sequence[Value], loop: RootLoop | None) -> Value:
         n = max(value.shape[0] for value in values)
         read = [value.to_numbers() for value in values]
         errors = np.zeros(n, np.uint8)
@@ -105,21 +115,38 @@ class _Body:
             name: np.array(np.broadcast_to(numbers, (n,)), np.float64)
             for name, (numbers, _) in zip(self.unknown.inputs, read, strict=False)
         }
-        parts = [slice(start, min(start + _TOGETHER, n)) for start in range(0, n, _TOGETHER)]
-        found = [self._solve(given, errors, part) for part in parts]
-        return Value.of_numbers(*(np.concatenate(column) for column in zip(*found, strict=True)))
+        solved, codes = np.empty(n), np.empty(n, np.uint8)
+        for start in range(0, n, _TOGETHER):
+            part = slice(start, min(start + _TOGETHER, n))
+            here = {name: numbers[part] for name, numbers in given.items()}
+            solved[part], codes[part] = self._solve(here, errors[part], loop)
+        return Value.of_numbers(solved, codes)
 
-    def _solve(self, given: Mapping[str, Floats], errors: Codes, part: slice) -> tuple[Floats, Codes]:
+    def _solve(self, given: Mapping[str, Floats], errors: Codes, loop: RootLoop | None) -> tuple[Floats, Codes]:
         """Solve some of the trials, few enough for the cache: solutions and errors, `(m,)` each."""
-        here, known = {name: values[part] for name, values in given.items()}, errors[part]
-        m = known.size
-        low, high = self.unknown.range_of(here, m)
-        found = find_roots(self.unknown.evaluated(here), np.where(known > 0, np.nan, low), high)
+        m = errors.size
+        low, high = self.unknown.range_of(given, m)
+        low = np.where(errors > 0, np.nan, low)
+        known = None if loop is None else self.unknown.both.read(given, m)
+        if loop is not None and known is not None:
+            solved, single = loop(known, low, high)
+            left = np.flatnonzero(~single)
+            if not left.size:
+                return solved, np.zeros(m, np.uint8)
+            given = {name: numbers[left] for name, numbers in given.items()}
+            codes = np.zeros(m, np.uint8)
+            solved[left], codes[left] = self._find(given, errors[left], low[left], high[left])
+            return solved, codes
+        return self._find(given, errors, low, high)
+
+    def _find(self, given: Mapping[str, Floats], errors: Codes, low: Floats, high: Floats) -> tuple[Floats, Codes]:
+        m = errors.size
+        found = find_roots(self.unknown.evaluated(given), low, high)
         counts = found.counts(m)
         codes = np.where(counts == 0, np.uint8(ErrorCode.NA), np.uint8(0))
         if self.root is None:
             codes = np.where(counts > 1, np.uint8(ErrorCode.NUM), codes)
-        codes = np.where(known > 0, known, codes).astype(np.uint8)
+        codes = np.where(errors > 0, errors, codes).astype(np.uint8)
         solved = np.where(codes > 0, 0.0, found.chosen(m, last=self.root is Which.LAST))
         return solved, codes
 
@@ -168,9 +195,16 @@ def unknown_of(
         reached |= limits.graph.reached
         targets = [Target(ir.Binary("+", _tree(each), ir.Number(0.0)), by) for each in ends]
         program = NumpyProgram.of(limits, targets, [], frozenset())
-    both = [Target(ir.Binary("+", _tree(each), ir.Number(0.0)), cell) for each in (cell, to)]
+    both = [_as_number(wanted, Target(_tree(each), cell)) for each in (cell, to)]
     inputs = tuple(name for at, name in named.items() if at in reached)
-    return Unknown(NumpyProgram.of(wanted, both, [], frozenset()), program, inputs)
+    return Unknown(RepeatedProgram.of(wanted, both, _BY), program, inputs)
+
+
+def _as_number(lowering: Lowering, target: Target) -> Target:
+    """Return what arithmetic reads of a target: of a text its number."""
+    if lowering.dag.types[lowering.target(target)] is Kind.NUMBER:
+        return target
+    return Target(ir.Binary("+", target.tree, ir.Number(0.0)), target.cell)
 
 
 def _tree(given: Parameter) -> ir.Expression:

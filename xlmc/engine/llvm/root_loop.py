@@ -23,7 +23,7 @@ from xlmc.engine.llvm.loop_arithmetic import intrinsic
 from xlmc.engine.llvm.loop_rules import LoopRule, Operand, reads
 from xlmc.engine.llvm.machine import machine
 from xlmc.engine.llvm.operations import loop_rule_of
-from xlmc.engine.passes.repeated import RepeatedProgram
+from xlmc.engine.numpy.repeated import RepeatedProgram
 from xlmc.engine.roots import CONVERGED, EPSILON, INTERPOLATIONS, OWN_STEPS, SCANNED
 from xlmc.excel.functions import Kind
 from xlmc.excel.functions.fifteen_digits import SNAP_TO_ZERO

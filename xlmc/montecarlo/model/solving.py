@@ -18,7 +18,7 @@ from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Target
 from xlmc.engine.graph.lowering import Lowering, lower_cells
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
-from xlmc.engine.passes.repeated import RepeatedProgram
+from xlmc.engine.numpy.repeated import RepeatedProgram
 from xlmc.engine.roots import SCANNED, find_roots
 from xlmc.engine.roots import Function as Difference
 from xlmc.errors import DefinitionError, ErrorCode

@@ -8,7 +8,7 @@ from workbook_files import workbook_of
 
 from xlmc.engine.engine import Target
 from xlmc.engine.graph.lowering import lower_cells
-from xlmc.engine.passes.repeated import RepeatedProgram
+from xlmc.engine.numpy.repeated import RepeatedProgram
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import Resolver
 from xlmc.excel.workbook.reader import read_workbook

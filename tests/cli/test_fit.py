@@ -111,6 +111,12 @@ def test_too_few_values_are_exit_code_1(xlmc, alone):
     assert "a uniform range, wide enough for every value that is possible, claims less" in outcome.err
 
 
+@pytest.mark.parametrize(("last", "code"), [(15, 1), (16, 0)])
+def test_fifteen_values_are_enough(xlmc, measured, last, code):
+    """Rows 2 to 15 are 14 values."""
+    assert xlmc("fit", measured, f"Tests!A2:A{last}").code == code
+
+
 @pytest.mark.parametrize(
     ("cells", "message"),
     [

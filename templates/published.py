@@ -333,7 +333,7 @@ _THROWN = filled(
         "A worked example, checked by a program that steps through flight, landing and slide in 10 µs: a body that "
         "leaves at 30 mph, 15° above the ground, falls 2.3 ft and slides at 0.66 comes to rest after 60.42 ft. The "
         "sheet returns 30 mph. If 0.9 of the vehicle's speed was given to it, the vehicle had 33.3 mph.",
-        "Where the angle is not known, the throw alone says at least 28.46 mph. Hit and run: no more than that.",
+        "Where the angle is not known, the throw alone says at least 28.46 mph. After a hit and run that may be all.",
     ),
 )
 

@@ -72,7 +72,7 @@ async def measure(folder: Path, moves: int) -> None:
         tab = TABS[move % len(TABS)]
         names = ["Answer 1", "Answer 2", "Answer 3"]
         view = {"kind": "view", "forecasts": names, "chosen": names, "tab": tab, "first": names[0], "second": names[1]}
-        _say(opened, window, {**view, "fits": False})
+        _say(opened, window, {**view, "trial": 0, "fits": False})
         await _drain(window, WAIT)
         began, before = time.perf_counter(), time.process_time()
         number = {"of": "assumption", "name": f"Input {1 + move % 60}", "key": "high", "value": 1.6 + move / 1000}

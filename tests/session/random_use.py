@@ -30,7 +30,7 @@ TOO_LATE = 4408
 PATIENCE = 120.0
 """Seconds after which a window counts as stuck."""
 
-TABS = ("charts", "matters", "pairs", "tables", "scenarios", "studies")
+TABS = ("charts", "matters", "pairs", "tables", "step", "scenarios", "studies")
 KINDS = (
     "move move move hold numbers freeze band limit limit reading state use tie decide solve run type reset keep keep"
     " drop show undo variants compare view view pin stop print save book book reload restart restore burst"
@@ -361,6 +361,7 @@ class Use:
                 "tab": dice.choice(TABS),
                 "first": "sum",
                 "second": dice.choice([row["name"], "needed"]),
+                "trial": dice.randrange(5_000),
             }
             client.say("view", **view, fits=dice.random() < 0.2)
         elif what in ("pin", "stop", "compare", "print"):

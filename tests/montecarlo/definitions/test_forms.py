@@ -6,7 +6,7 @@ import math
 
 import pytest
 
-from xlmc.montecarlo.definitions.forms import Form, kind_of_format, span_text
+from xlmc.montecarlo.definitions.forms import PLAIN, Form, kind_of_format, span_text
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate
 
@@ -111,6 +111,13 @@ def test_what_is_no_number_is_not_written(form, value):
 def test_numbers_with_errors(form, found, estimate, value, spread):
     written, given = FORMS[form], Estimate(*found)
     assert (written.estimate(given), written.value(given), written.spread(given)) == (estimate, value, spread)
+
+
+@pytest.mark.parametrize("error", [1e-13, 1e-14, 1e-16, 3e-17, 1e-300])
+def test_no_digit_is_written_that_a_number_does_not_have(error):
+    like = Estimate(20.0, error)
+    assert PLAIN.beside(20.0, like) == PLAIN.value(like) == PLAIN.number(20.0, 17) == "20"
+    assert PLAIN.beside(-0.3, Estimate(-0.3, error / 1e3)) == "-0.3"
 
 
 def test_a_number_beside_another_has_its_digits():

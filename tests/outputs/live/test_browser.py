@@ -28,6 +28,8 @@ LOOKED_AT = {
     (1400, "charts"),
     (1280, "matters"),
     (1024, "pairs"),
+    (1024, "step"),
+    (375, "step"),
     (768, "tables"),
     (390, "scenarios"),
     (375, "studies"),
@@ -346,9 +348,9 @@ def test_the_dark_and_forced_colours(chromium, running, tmp_path):
         look = "const {{ {0} }} = getComputedStyle(document.querySelector(arguments[0])); return {0}".format
         assert page.run(look("backgroundColor"), "body") == "rgb(22, 28, 35)"
         assert page.run(look("backgroundColor"), ".chart") == "rgb(255, 255, 255)"  # as it is copied and printed
-        for tab in ("charts", "matters", "pairs", "tables", "scenarios", "studies"):
+        for tab in ("charts", "matters", "pairs", "tables", "step", "scenarios", "studies"):
             page.run("Live.right.choose(arguments[0])", tab)
-            if tab in ("matters", "tables"):
+            if tab in ("matters", "tables", "step"):
                 page.until(f"document.querySelectorAll('#panel-{tab} table').length")
             assert AXE is None or violations(chromium) == [], tab
         emulate(forced_colors="active")
@@ -392,9 +394,9 @@ def test_names_of_a_hostile_workbook_are_text_and_at_every_width_nothing_overflo
     for width, height in WIDTHS:
         size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
         chromium.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
-        for tab in ("charts", "matters", "pairs", "tables", "scenarios", "studies"):
+        for tab in ("charts", "matters", "pairs", "tables", "step", "scenarios", "studies"):
             page.run("Live.right.choose(arguments[0])", tab)
-            if tab in ("matters", "tables"):
+            if tab in ("matters", "tables", "step"):
                 page.until(f"document.querySelectorAll('#panel-{tab} table').length")
             fits, moving, unnamed = page.run(
                 "return [document.documentElement.scrollWidth <= innerWidth, document.getAnimations().length,"
@@ -411,6 +413,31 @@ def test_names_of_a_hostile_workbook_are_text_and_at_every_width_nothing_overflo
     assert EVIL in page.one("#left").text
     assert page.run("return window.stolen") is None
     assert page.all("img") == []
+
+
+def test_trials_are_stepped_through_by_keys(chromium, running, tmp_path):
+    page = Page(chromium, running(book=simple(tmp_path / "case.xlsx")))
+    page.tab("step")
+    at = "document.querySelector('#panel-step .made')?.innerText.includes('{}')".format
+    page.until(at("Trial 1 is "))
+    back, on = page.button("Previous trial"), page.button("Next trial")
+    assert [back.get_attribute("aria-disabled"), on.get_attribute("aria-disabled")] == ["true", "false"]
+    for _ in range(2):
+        on.send_keys("\ue007")
+    page.until(at("Trial 3 is "))
+    assert page.run("return document.activeElement.innerText") == "Next trial"
+    back.send_keys("\ue007")
+    page.until(at("Trial 2 is "))
+    box = page.one("#panel-step input")
+    page.type(box, "999999999")
+    page.until("document.querySelector('#panel-step input').value.length > 2")
+    page.until(
+        at("is ") + " && document.querySelector('#panel-step button + label + span + button').ariaDisabled === 'true'"
+    )
+    last = box.get_attribute("value")
+    page.until(at(f"Trial {last} is "))
+    page.type(box, "no number")
+    assert box.get_attribute("value") == last
 
 
 def test_a_workbook_with_sixty_assumptions_and_twelve_answers_stays_usable(chromium, running, tmp_path):

@@ -7,7 +7,16 @@ import pytest
 from xlmc.outputs.live.protocol import MOST_BYTES, ProtocolError, read_message
 
 SET = {"kind": "set", "of": "assumption", "name": "a", "key": "high", "value": 1.5, "held": True, "seq": 3}
-VIEW = {"kind": "view", "forecasts": [], "chosen": [], "tab": "charts", "first": "", "second": "", "fits": False}
+VIEW = {
+    "kind": "view",
+    "forecasts": [],
+    "chosen": [],
+    "tab": "charts",
+    "first": "",
+    "second": "",
+    "trial": 0,
+    "fits": False,
+}
 
 WRONG = {
     "no JSON": "{",

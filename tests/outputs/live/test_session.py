@@ -42,6 +42,7 @@ from xlmc.outputs.live.jobs import MOVING_TRIALS, Outcome, SupersededError
 from xlmc.outputs.live.kinds import in_kind
 from xlmc.outputs.live.protocol import PageMessage, written
 from xlmc.outputs.live.session import Session
+from xlmc.outputs.live.single_step import Step
 from xlmc.outputs.live.what_changed import what_changed
 from xlmc.outputs.live.window_book import assumption_rows, correlation_rows, decision_rows, filter_rows, solve_rows
 
@@ -83,8 +84,9 @@ def until(session, stage):
     return job
 
 
-def seen(names, tab="charts", first="", second="", *, fits=False):
-    return {"forecasts": names, "chosen": names, "tab": tab, "first": first, "second": second, "fits": fits}
+def seen(names, tab="charts", first="", second="", *, trial=0, fits=False):
+    pair = {"first": first, "second": second}
+    return {"forecasts": names, "chosen": names, "tab": tab, **pair, "trial": trial, "fits": fits}
 
 
 @pytest.fixture(scope="module")
@@ -146,7 +148,7 @@ def test_evidence_is_used_as_simulate_uses_it(model_of, way, monkeypatch):
         assert outcome.simulation.forecasts[name].tobytes() == values.tobytes()
     session.finish(job, outcome)
     for tab in ("matters", "pairs", "tables"):
-        view = {"forecasts": ["x"], "chosen": ["x"], "tab": tab, "first": "x", "second": "v", "fits": True}
+        view = seen(["x"], tab, "x", "v", fits=True)
         session.receive(PageMessage("view", view))
         for message in settle(session):
             written(message)
@@ -306,6 +308,47 @@ def test_all_tabs_are_made_of_the_run_at_rest(case):
             assert_quadrants(part["pair"]["quadrants"], run.inputs[FRICTION], run.forecasts[names[1]])
         else:
             assert names[0] in part["html"]
+
+
+@pytest.mark.parametrize("trial", [0, 1, 2, 3_000, 10**9])
+def test_a_stepped_trial_is_the_workbook_with_its_draws_typed_in(case, tmp_path, trial):
+    path, model = case
+    session, names = Session(model), [each.name for each in model.forecasts]
+    session.receive(PageMessage("view", seen(names, "step", trial=trial)))
+    (part,) = [each for each in settle(session) if each["kind"] == "part"]
+    run = session.rest
+    kept = min(values.size for values in run.prior.values())
+    assert (part["tab"], part["trial"], part["trials"]) == ("step", min(trial, kept - 1), kept)
+    at = part["trial"]
+    holds, values = Step(run.model).at(run.prior, at)
+    typed = openpyxl.load_workbook(path)
+    for row in ("Frozen", "Value"):
+        changes = {(name, row): True if row == "Frozen" else float(drawn[at]) for name, drawn in run.prior.items()}
+        type_in(typed, rows_of(model), changes)
+    typed.save(tmp_path / "typed.xlsx")
+    reference = load(tmp_path / "typed.xlsx").program("formulas").evaluator(1)
+    assert [bool(column.values[0]) for column in reference.filters({}, 1)] == holds
+    for forecast, column in zip(model.forecasts, reference.forecasts(np.arange(1)), strict=True):
+        assert float(column.values[0]) == pytest.approx(values[forecast.cell], rel=1e-12), forecast.name
+        assert forecast.name in part["html"]
+    assert {*values} >= {*run.model.needed.graph.formulas}
+    verdict = "is accepted" if all(holds) else "is rejected by"
+    assert f"Trial {at + 1:,} {verdict}" in part["html"]
+
+
+def test_the_trials_that_are_stepped_through_are_those_that_were_counted(case):
+    session = Session(case[1])
+    settle(session)
+    run = session.rest
+    step, accepted = Step(run.model), []
+    for trial in range(200):
+        holds, values = step.at(run.prior, trial)
+        if all(holds):
+            accepted.append([values[each.cell] for each in run.model.forecasts])
+    assert 0 < len(accepted) < 200
+    for number, forecast in enumerate(run.model.forecasts):
+        shown = [values[number] for values in accepted]
+        assert run.forecasts[forecast.name][: len(shown)].tolist() == shown, forecast.name
 
 
 def test_what_matters_follows_while_a_handle_moves_unless_it_takes_long(case, monkeypatch):

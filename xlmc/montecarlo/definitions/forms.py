@@ -14,6 +14,7 @@ from xlmc.errors import FormulaError
 from xlmc.excel.functions.number_format import FormatError, UnknownFormat, parse_format
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.number_text import (
+    MOST_DIGITS,
     decimals_of,
     exact_text,
     fixed_text,
@@ -125,6 +126,8 @@ class Form:
         scaled = self._scaled(value)
         if decimals is None:
             text = self._whole_coins(exact_text(abs(scaled)))
+        elif scaled and decimals + two_digit_exponent(scaled) >= MOST_DIGITS:
+            text = exact_text(abs(scaled))  # decimals below its last bit say nothing
         elif is_far(scaled):
             text = number_text(abs(scaled), max(decimals + two_digit_exponent(scaled) + 1, 1))
         else:

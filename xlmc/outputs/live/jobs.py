@@ -21,6 +21,7 @@ from xlmc.outputs.live.comparison import Comparison
 from xlmc.outputs.live.frames import Bases, bases_of, frame_of, matrix_of, matters_html, pair_of, rest_of, tables_html
 from xlmc.outputs.live.moving_models import KnownModels
 from xlmc.outputs.live.protocol import Message, PageMessage
+from xlmc.outputs.live.single_step import step_of
 from xlmc.outputs.live.window_book import shapes_of
 
 if TYPE_CHECKING:
@@ -68,12 +69,13 @@ class SupersededError(Exception):
 
 @dataclass(frozen=True, slots=True)
 class Tab:
-    """An open tab, the two quantities of the tab `pairs`, and the forecasts that tabs are of."""
+    """An open tab, the two quantities of the tab `pairs`, the forecasts that tabs are of, and the trial of `step`."""
 
     key: str = "charts"
     first: str = ""
     second: str = ""
     chosen: tuple[str, ...] = ()
+    trial: int = 0
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +100,8 @@ class View:
 def _tab(sent: PageMessage, chosen: tuple[str, ...]) -> Tab:
     if sent["tab"] == "pairs":
         return Tab("pairs", sent["first"], sent["second"], chosen)
+    if sent["tab"] == "step":
+        return Tab("step", trial=sent["trial"])
     return Tab(sent["tab"], chosen=chosen if sent["tab"] in ("matters", "tables") else ())
 
 
@@ -149,6 +153,7 @@ PARTS: Final[Mapping[str, Callable[[RunResult, Tab, ReportShare], Message]]] = {
         "pair": pair_of(run, tab.first, tab.second),
         **({"matrix": matrix_of(run, tab.chosen)} if tab.chosen else {}),
     },
+    "step": lambda run, tab, _: step_of(run, tab.trial),
 }
 """Tab whose contents are made of a run at rest -> what makes them."""
 

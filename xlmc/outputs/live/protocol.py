@@ -17,9 +17,9 @@ still held; `seq`: counts the page's changes, and comes back with the frame |
 | `run` | `trials`, `seed` | of runs at rest, instead of what the workbook says; null: what it says |
 | `undo`, `redo` | | go back to the state before the last change, and forth again |
 | `reset` | `of`, `name` | everything of one row as in the book; with an empty `name`: of all, and the run |
-| `view` | `forecasts`, `chosen`, `tab`, `first`, `second`, `fits` | which charts can be seen, of which \
+| `view` | `forecasts`, `chosen`, `tab`, `first`, `second`, `trial`, `fits` | which charts can be seen, of which \
 forecasts the other tabs are, which tab is open, whose pairs it \
-shows, whether fitted distributions are wanted |
+shows, which trial is stepped to (from 0), whether fitted distributions are wanted |
 | `pin` | | the state now becomes the one that is drawn behind |
 | `restore` | `take` | bring back what was set when the window was last closed, or forget it |
 | `stop` | | end the run that is going on |
@@ -55,7 +55,8 @@ there is something to |
 from too few trials; `stage`: \
 `moving` or `rest`; `shapes`: the distributions that differ from those of the workbook |
 | `rest` | `version`, `sentences`, `warnings`, `checks`, `filters`, `sampling` | what is said of a run at rest |
-| `part` | `tab`, `version`, `html`, or `pair` and `matrix` | the contents of the open tab |
+| `part` | `tab`, `version`, `html`, or `pair` and `matrix`; of `step` also `trial` and `trials` | the contents of the \
+open tab |
 | `running` | `version`, `stage`, `share` | how far a run is; `share` 1: done |
 | `study` | `what`, `of`, `state`, `step`, `seconds`, `text` | how far a study is; `of`: the changes that it is asked \
 with; `state`: `running`, `done`, `cancelled`, \
@@ -183,9 +184,10 @@ _FIELDS: Final[Mapping[str, Mapping[str, Callable[[object], bool]]]] = {
     "view": {
         "forecasts": _are_texts,
         "chosen": _are_texts,
-        "tab": _one_of("charts", "matters", "pairs", "tables", "scenarios", "studies"),
+        "tab": _one_of("charts", "matters", "pairs", "tables", "step", "scenarios", "studies"),
         "first": _is_text,
         "second": _is_text,
+        "trial": _is_count,
         "fits": _is_flag,
     },
     "pin": {},

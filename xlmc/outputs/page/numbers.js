@@ -24,6 +24,14 @@ function percentText({ value, error }) {
   return value === 0 || value === 1 ? String(100 * value) : estimateText(100 * value, 100 * error);
 }
 
+const MOST_DIGITS = 15; // of a double; what lies below is rounding
+
+/** A number with so many decimals; where more were wanted than it can have, without the zeros at its end. */
+function fixed(number, decimals, wanted) {
+  const text = number.toFixed(decimals);
+  return wanted > decimals && text.includes(".") ? text.replace(/\.?0+$/, "") : text;
+}
+
 /** The power of ten of a number rounded to two digits: 0.00996 -> -2. */
 function exponentOf(number) {
   return Number(number.toExponential(1).split("e")[1]);
@@ -63,8 +71,9 @@ function formText(value, decimals, form) {
   if (!Number.isFinite(value)) return valueText(value, decimals);
   if (form.moment) return momentText(value, form);
   const scaled = Math.abs(value * form.factor);
-  const most = Math.max(0, decimals - Math.round(Math.log10(form.factor)));
-  const plain = scaled >= 1e15 || (scaled > 0 && scaled < 1e-4) ? String(Number(scaled.toPrecision(7))) : scaled.toFixed(most);
+  const wanted = Math.max(0, decimals - Math.round(Math.log10(form.factor)));
+  const most = scaled > 0 ? Math.max(0, Math.min(wanted, MOST_DIGITS - 1 - exponentOf(scaled))) : Math.min(wanted, MOST_DIGITS);
+  const plain = scaled >= 1e15 || (scaled > 0 && scaled < 1e-4) ? String(Number(scaled.toPrecision(7))) : fixed(scaled, most, wanted);
   const text = styled(plain);
   return `${value < 0 && /[1-9]/.test(text) ? "-" : ""}${form.before}${text}${form.after}`;
 }

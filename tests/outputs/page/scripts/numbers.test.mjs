@@ -30,6 +30,14 @@ test("an error has two digits, and its value as many decimals", () => {
   assert.equal(estimateText(51234, 841), "51230 ± 840");
 });
 
+test("no digit is written that a number does not have", () => {
+  for (const [value, decimals, text] of [[20, 17, "20"], [20.5, 17, "20.5"], [-0.3, 18, "-0.3"], [0.1 + 0.2, 17, "0.3"], [0, 18, "0"],
+    [1234567.25, 12, "1,234,567.25"], [20, 3, "20.000"], [100, 14, "100"], [0.5, 2, "0.50"]]) {
+    assert.equal(formText(value, decimals, PLAIN), text, `${value} to ${decimals}`);
+  }
+  assert.equal(formText(0.2, 17, { factor: 100, before: "", after: " %" }), "20 %");
+});
+
 test("a share of all or none of the trials has no error", () => {
   assert.equal(percentText({ value: 1, error: 0.001 }), "100");
   assert.equal(percentText({ value: 0, error: 0.001 }), "0");

@@ -196,6 +196,54 @@ class ScenarioView {
   }
 }
 
+/** One trial of the run, with all its cells; `chosen()` is called when another one is wanted. */
+class StepView {
+  constructor(place, chosen) {
+    this.trial = 0;
+    this.trials = 1;
+    this.chosen = chosen;
+    this.box = make("input", { type: "text", inputmode: "numeric", autocomplete: "off", size: 8, value: "1",
+      on: { change: () => this.go(steppedTo(this.box.value, this.trials) ?? this.trial) } });
+    this.of = make("span");
+    const step = (text, by) => make("button", { type: "button", text, on: { click: () => this.go(this.trial + by) } });
+    this.back = step("Previous trial", -1);
+    this.on = step("Next trial", 1);
+    this.table = make("div", { class: "made" });
+    place.append(make("p", { class: "remark", text: "One trial of the run: what was drawn, what every formula that the answers need gave, "
+      + "and whether the filters accept it." }),
+    make("p", { class: "choices" }, this.back, " ", make("label", {}, "Trial ", this.box), this.of, " ", this.on), this.table);
+    this.bound();
+  }
+
+  go(trial) {
+    this.trial = Math.max(0, Math.min(trial, this.trials - 1));
+    this.bound();
+    this.chosen();
+  }
+
+  /** Say where this is; the ends lead no further, and a button that has the focus keeps it. */
+  bound() {
+    this.box.value = countText(this.trial + 1);
+    this.back.setAttribute("aria-disabled", String(this.trial === 0));
+    this.on.setAttribute("aria-disabled", String(this.trial >= this.trials - 1));
+  }
+
+  part(html, trial, trials) {
+    this.trials = Math.max(1, trials);
+    this.of.textContent = ` of the first ${countText(trials)}`;
+    if (trial !== this.trial && this.trial < trials) return; // another one is wanted already
+    this.trial = trial;
+    this.bound();
+    showTables(this.table, html);
+  }
+}
+
+/** The trial that was typed, from 0 and among those there are; null for what is no whole number above 0. */
+function steppedTo(text, trials) {
+  const value = typed(text, null);
+  return Number.isInteger(value) && value > 0 ? Math.min(value, trials) - 1 : null;
+}
+
 /** What a scenario changes; much of it behind its number. */
 function changesOf(changes) {
   const said = make("span", { class: "about" }, named(changes.join("; ")));

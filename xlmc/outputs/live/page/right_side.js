@@ -1,7 +1,7 @@
 "use strict";
 // The right side: tabs with the charts, what matters, pairs, tables, scenarios, and what is handed over.
 
-const TABS = { charts: "Answers", matters: "What matters", pairs: "Pairs", tables: "Tables", scenarios: "Scenarios",
+const TABS = { charts: "Answers", matters: "What matters", pairs: "Pairs", tables: "Tables", step: "Single step", scenarios: "Scenarios",
   studies: "Hand over" };
 
 const MANY = 6; // answers and sentences; more of them would leave no room for the charts
@@ -47,6 +47,7 @@ class RightSide {
     });
     LivePanel.set = (name, key, value) => wire.set("forecast", name, key, value, false);
     LivePanel.back = (name) => wire.say({ kind: "reset", of: "forecast", name });
+    this.step = new StepView(this.places.step, () => this.look());
     this.scenarios = new ScenarioView(this.places.scenarios, wire);
     this.hand = new HandView(this.places.studies, wire);
     this.watch = new IntersectionObserver((entries) => {
@@ -90,7 +91,8 @@ class RightSide {
       const isSeen = (name) => this.seen.has(name) || this.seen.has(ALL);
       const names = this.forecasts.map((each) => each.name).filter((name) => this.open.has(name) && isSeen(name));
       const { first = "", second = "" } = this.pair ?? {};
-      this.wire.say({ kind: "view", forecasts: names, chosen: [...this.open], tab: this.tab, first, second, fits: Boolean(this.fits) });
+      this.wire.say({ kind: "view", forecasts: names, chosen: [...this.open], tab: this.tab, first, second,
+        trial: this.step.trial, fits: Boolean(this.fits) });
     }, 60);
   }
 
@@ -195,8 +197,9 @@ class RightSide {
       make("summary", { text: `${count} on answers without a chart` }), make("ul", {}, ...aside.map(line)))));
   }
 
-  part({ tab, html, pair, matrix }) {
+  part({ tab, html, pair, matrix, trial, trials }) {
     if (tab === "scenarios") this.scenarios.part(html);
+    else if (tab === "step") this.step.part(html, trial, trials);
     else if (html !== undefined) showTables(this.tables[tab], html);
     if (pair !== undefined) this.pairs.show(pair);
     if (matrix !== undefined) this.pairs.matrix.show(matrix);

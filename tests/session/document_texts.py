@@ -6,7 +6,17 @@ import itertools
 import re
 from collections.abc import Iterator
 
-from xlmc.outputs.document.parts import Bullets, Document, Figure, Heading, Paragraph, Table
+from xlmc.outputs.document.parts import (
+    Bullets,
+    Chart,
+    Document,
+    Drawing,
+    Figure,
+    Heading,
+    Paragraph,
+    Table,
+    cell_text,
+)
 
 __all__ = ["squeezed", "texts_of"]
 
@@ -31,6 +41,6 @@ def texts_of(document: Document) -> Iterator[str]:
             case Table():
                 yield block.caption
                 cells = itertools.chain(block.heads, *block.rows)
-                yield from (cell for cell in cells if isinstance(cell, str))
+                yield from (cell_text(cell) for cell in cells if not isinstance(cell, Drawing | Chart))
             case _:
                 yield block.text

@@ -151,3 +151,12 @@ def test_damaged_properties_stay_as_they_are():
     done = inject(inject(host, RESULTS), RESULTS)
     assert done["docProps/app.xml"] == b"<Properties"
     assert checked_bytes(done, host)
+
+
+def test_sheets_that_were_added_to_a_workbook_that_nobody_calculated_have_their_values():
+    def fill(book):
+        book.add_worksheet("Host").write_formula("A1", "=1+1")
+        book.add_worksheet("Added").write_formula("A1", "=Host!A1+1", None, 3)
+
+    book = read_workbook(package_bytes(built(fill)))
+    assert [book.content(Cell(sheet, 1, 1)).value for sheet in ("Host", "Added")] == [None, 3.0]

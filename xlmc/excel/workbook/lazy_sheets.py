@@ -49,7 +49,9 @@ class LazySheets(Mapping[str, Sheet]):
         if name not in self._parsed:
             entry = self._entries[name]
             with naming_file(self._file):
-                self._parsed[name] = parse_sheet(self._parts[entry.part], entry, self._context)
+                xml = self._parts[entry.part]
+                context = replace(self._context, placeholders=self._never_calculated(xml))
+                self._parsed[name] = parse_sheet(xml, entry, context)
         return self._parsed[name]
 
     def __contains__(self, name: object) -> bool:
@@ -120,18 +122,15 @@ class LazySheets(Mapping[str, Sheet]):
             strings=self._read("sharedStrings", shared_strings) or (),
             dynamic_marks=self._read("sheetMetadata", dynamic_array_marks) or frozenset(),
             date1904=self._structure.date1904,
-            placeholders=self._never_calculated(),
         )
 
-    def _never_calculated(self) -> bool:
-        """Whether a program that does not calculate wrote the workbook: 0 beside every formula, and Excel is asked to.
+    def _never_calculated(self, xml: bytes) -> bool:
+        """Whether a program that does not calculate wrote the sheet: 0 beside every formula, and Excel is asked to.
 
-        XlsxWriter writes so, and pandas by it.
+        XlsxWriter writes so, and pandas by it. Other sheets of the workbook may be xlmc's, which have values.
         """
-        if not is_true(self._structure.calculation.get("fullCalcOnLoad")):
-            return False
-        sheets = [self._parts[entry.part] for entry in self._entries.values() if entry.part in self._parts]
-        return not any(b"\0" in xml[:4] or _CALCULATED.search(xml) for xml in sheets)
+        asked = is_true(self._structure.calculation.get("fullCalcOnLoad"))
+        return asked and b"\0" not in xml[:4] and not _CALCULATED.search(xml)
 
     def _read(self, kind: str, reader: Callable[[bytes, str], _T]) -> _T | None:
         part = self._structure.target(kind)

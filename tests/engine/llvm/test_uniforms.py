@@ -7,6 +7,7 @@ import pytest
 
 pytest.importorskip("llvmlite")
 
+from xlmc.engine.llvm.machine import machine
 from xlmc.engine.llvm.uniforms import filler
 from xlmc.montecarlo.sampling.streams import Stream
 
@@ -22,11 +23,25 @@ def test_the_uniforms_of_every_stream(count, start):
     assert np.array_equal(rows, expected)
 
 
-def test_offsets_and_factors_round_as_numpy_does():
+@pytest.mark.parametrize("n", [1, 7, 8, 9, 63, 64, 2049])
+@pytest.mark.parametrize("wide", [None, False])
+def test_any_number_of_trials_and_nothing_beyond_them(n, wide, monkeypatch):
+    if wide is not None:
+        monkeypatch.setattr(machine(), "multiplies_52_bits", wide)
+    streams = [Stream(7, f"input {k}") for k in range(5)]
+    rows, expected = np.full((2, 5, n + 9), -1.0)
+    filler(streams, [(0.0, 1.0)] * 5, rows[:, :n])(12_345)
+    for stream, row in zip(streams, expected, strict=True):
+        stream.uniforms(12_345, row[:n])
+    assert np.array_equal(rows, expected)
+
+
+@pytest.mark.parametrize(("low", "width"), [(0.6, 0.95 - 0.6), (5.0, 0.0), (-1e300, 3e300), (0.0, 1e-300)])
+def test_offsets_and_factors_round_as_numpy_does(low, width):
     stream, row, expected = Stream(1, "a"), np.empty((1, 5000)), np.empty(5000)
-    filler([stream], [(0.6, 0.95 - 0.6)], row)(0)
+    filler([stream], [(low, width)], row)(0)
     stream.uniforms(0, expected)
-    assert np.array_equal(row[0], expected * (0.95 - 0.6) + 0.6)
+    assert np.array_equal(row[0], expected * width + low)
 
 
 BOOKS = {

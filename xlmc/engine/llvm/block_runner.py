@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.data_classes import dataclass
+from xlmc.engine.cache_lines import aligned_array
 from xlmc.engine.engine import AcceptedBlock, BlockMemory, Linear
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.nodes import Input
@@ -129,15 +130,15 @@ class NativeBlockRunner:
         self._parts, self._draw, self._names = parts, draw, tuple(names)
         self._runs = self._careful = 0
         self._chunk = gcd(_trials_in_chunk(len(self._names) + len(set(parts.slots.values()))), block)
-        rows = np.empty((len(self._names), self._chunk + 8))[:, : self._chunk]  # apart, for the cache's sake
+        rows = _aligned_rows(len(self._names), self._chunk + 8)[:, : self._chunk]  # apart, for the cache's sake
         self._fill = None if linear is None else filler(linear.streams, linear.maps, rows)
         self._rows = dict(zip(self._names, rows, strict=True))
         self._memory = Memory(parts.slots, self._chunk)
         self._trials, self._survivors = np.arange(block), np.arange(self._chunk)
         self._block_memory = BlockMemory(
             np.empty(block, np.int64),
-            dict(zip(self._names, np.empty((len(self._names), block)), strict=True)),
-            [np.empty(block) for _ in parts.forecasts],
+            dict(zip(self._names, _aligned_rows(len(self._names), block), strict=True)),
+            [*_aligned_rows(len(parts.forecasts), block)],
         )
         self._wrong = np.zeros((2, self._chunk), np.uint8)
         f = len(parts.rejecting)
@@ -340,6 +341,14 @@ class _TableWriter:
     def add_pairs(self, pairs: Sequence[tuple[int, int]]) -> int:
         """Add how many pairs there are, and their words; give the position where this begins."""
         return self.add(len(pairs), *chain.from_iterable(pairs))
+
+
+def _aligned_rows(k: int, n: int) -> Floats:
+    """Make an array `(k, n)`, whose rows begin with lines of the cache where n is a multiple of 8.
+
+    A vector of AVX-512 is a line long: to read one that lies in two lines takes twice as long.
+    """
+    return aligned_array(k * n, np.dtype(np.float64)).reshape(k, n)
 
 
 def _address_of(array: Any) -> int:

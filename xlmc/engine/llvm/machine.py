@@ -62,6 +62,7 @@ class Machine:
     Attributes:
         fused: whether it multiplies and adds in one instruction, rounding once.
         triple: its kind, in LLVM's words.
+        multiplies_52_bits: whether it adds the halves of products of eight numbers of 52 bits in one instruction each.
         flushes: whether it makes 0 of numbers that are too small for Excel.
     """
 
@@ -70,6 +71,7 @@ class Machine:
         self._compiled = lru_cache(_KEPT)(self._compile)
         self.triple = triple = binding.get_default_triple()
         self.fused = "+fma" in features.split(",") or triple.startswith(("aarch64", "arm64"))
+        self.multiplies_52_bits = {"+avx512ifma", "+avx512dq"} <= {*features.split(",")} and triple.startswith("x86_64")
         self.flushes = flushes(triple)
 
     def _target(self) -> Any:

@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from xlmc.engine.cache_lines import aligned_array
 from xlmc.engine.graph.graph import Dag
 from xlmc.excel.functions import Kind
 
@@ -69,7 +70,8 @@ class Memory:
 
     def __init__(self, slots: Mapping[int, Slot], block: int) -> None:
         arrays: dict[Slot, NDArray[Any]] = {
-            slot: np.empty(block, np.bool_ if slot.logical else np.float64) for slot in set(slots.values())
+            slot: aligned_array(block, np.dtype(np.bool_ if slot.logical else np.float64))
+            for slot in set(slots.values())
         }
         self._arrays = {node: arrays[slot] for node, slot in slots.items()}
         self.addresses = _Addresses()

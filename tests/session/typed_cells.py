@@ -6,12 +6,18 @@ from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
+from xlmc.engine.engine import Target
+from xlmc.engine.engines import ENGINES
+from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.excel.address import Cell, parse_address
+from xlmc.excel.formula import Resolver, build_graph
 from xlmc.excel.workbook.workbook import CellContent, CellValue, Workbook
 from xlmc.montecarlo.model.loading import build_model
 from xlmc.montecarlo.model.model import CompiledModel
 
-__all__ = ["model_of", "named_cells", "with_typed"]
+__all__ = ["computed_at", "model_of", "named_cells", "with_typed"]
 
 
 def model_of(workbook: Workbook) -> CompiledModel:
@@ -44,3 +50,24 @@ def with_typed(workbook: Workbook, values: Mapping[str | Cell, CellValue]) -> Wo
         number = float(value) if isinstance(value, int) and not isinstance(value, bool) else value
         sheets[cell.sheet] = replace(sheet, cells={**sheet.cells, (cell.row, cell.column): CellContent(number)})
     return replace(workbook, sheets=sheets)
+
+
+def computed_at(workbook, inputs, wanted):
+    """Name of a cell -> its values `(n,)` for inputs `(n,)`, or numbers where n is 1; NaN for an error.
+
+    Inputs are given by name or address. What is not given keeps the value of its cell.
+    """
+    at = named_cells(workbook)
+    live = {given if isinstance(given, Cell) else at[given]: str(given) for given in inputs}
+    resolver = Resolver(workbook, list(live))
+    targets = [Target(at[name], at[name]) for name in wanted]
+    places = [target.cell for target in targets]
+
+    def lower(more):
+        return Lowering(build_graph(resolver, places, frozenset(live), more=more), live, {})
+
+    n = max(np.size(values) for values in inputs.values())
+    full = {str(s): np.ascontiguousarray(np.broadcast_to(np.asarray(v, float), (n,))) for s, v in inputs.items()}
+    program = ENGINES["numpy"].load()(lower_until_complete(lower), targets, [], frozenset(full))
+    columns = program.evaluator(n).filters(full, n)
+    return {name: column.as_floats().copy() for name, column in zip(wanted, columns, strict=True)}

@@ -8,7 +8,6 @@ import zipfile
 from functools import cache
 from pathlib import Path
 
-import numpy as np
 import openpyxl
 import pytest
 import typed_cells
@@ -18,10 +17,6 @@ from recalculated_books import RECALCULATED
 from simulated import simulated
 from typed_cells import named_cells, with_typed
 
-from xlmc.engine.engine import Target
-from xlmc.engine.engines import ENGINES
-from xlmc.engine.graph.lowering import Lowering, lower_until_complete
-from xlmc.excel.formula import Resolver, build_graph
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.model.loading import load
 
@@ -111,29 +106,8 @@ def shown(read):
 
 @pytest.fixture(scope="session")
 def cells(read):
-    """`cells(name, inputs, wanted)`: a workbook as a function of any input cells, by symbol; NaN for an error.
-
-    What is not given keeps the value of its cell. Inputs and results are `(n,)`, or numbers where n is 1.
-    """
-
-    def compute(name, inputs, wanted):
-        workbook = read(name)
-        at = named_cells(workbook)
-        live = {at[symbol]: symbol for symbol in inputs}
-        resolver = Resolver(workbook, list(live))
-        targets = [Target(at[symbol], at[symbol]) for symbol in wanted]
-        places = [target.cell for target in targets]
-
-        def lower(more):
-            return Lowering(build_graph(resolver, places, frozenset(live), more=more), live, {})
-
-        n = max(np.size(values) for values in inputs.values())
-        full = {s: np.ascontiguousarray(np.broadcast_to(np.asarray(v, float), (n,))) for s, v in inputs.items()}
-        program = ENGINES["numpy"].load()(lower_until_complete(lower), targets, [], frozenset(inputs))
-        columns = program.evaluator(n).filters(full, n)
-        return {symbol: column.as_floats().copy() for symbol, column in zip(wanted, columns, strict=True)}
-
-    return compute
+    """`cells(name, inputs, wanted)`: a workbook as a function of any input cells; see `typed_cells.computed_at`."""
+    return lambda name, inputs, wanted: typed_cells.computed_at(read(name), inputs, wanted)
 
 
 @pytest.fixture(scope="session")

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 from simulated import simulated
-from typed_cells import model_of, named_cells, with_typed
+from typed_cells import computed_at, model_of, named_cells, with_typed
 
 from templates.writer.cached import computed
 from xlmc.excel.address import Cell
@@ -113,26 +113,26 @@ def test_the_line_is_that_of_least_squares(read):
 @pytest.mark.parametrize("lined", [False, True], ids=["b0 given", "line"])
 def test_the_next_sister_test_lies_in_the_range_as_often_as_it_says(lined, read):
     """Tests are made with a scatter; the speed that the template gives for one more covers it in 80 of 100 families."""
-    rng, b0, b1, scatter, covered, families = np.random.default_rng(11), 5.0, 1.5, 1.2, 0, 60
-    for _ in range(families):
-        depths = np.array([12.0, 16.0, 20.0, 24.0, 20.0]) if lined else np.full(5, 20.0)
-        speeds = b0 + b1 * depths + scatter * rng.standard_normal(5)
-        tests = [(1, 3600, speed, *[depth] * 6, 64) for speed, depth in zip(speeds, depths, strict=True)]
-        typed = {"b0_1": b0, "line_1": 1} if lined else {"b0_1": b0}
-        book = entered(read("crush-energy"), tests, typed)
-        level, slope, around, mean, deviation, sum_of_squares = shown(
-            book, ["level_1", "pass_1_5", "line_sd_1", "x_tests_1", "b1_sd_1", "Sxx_1"]
-        )
-        t_level, t_slope = (rng.standard_t(3 if lined else 4, 4_000) for _ in range(2))
-        if lined:
-            slopes = slope + around / np.sqrt(sum_of_squares) * t_slope
-            predicted = level + around * np.sqrt(1.2) * t_level + slopes * (20.0 - mean)
-        else:
-            (centre,) = shown(book, ["b1_tests_1"])
-            predicted = b0 + 20.0 * (centre + deviation * np.sqrt(1.2) * t_level)
-        low, high = np.quantile(predicted, [0.1, 0.9])
-        covered += low <= b0 + b1 * 20.0 + scatter * rng.standard_normal() <= high
-    assert abs(covered / families - 0.8) < 4 * np.sqrt(0.8 * 0.2 / families)
+    rng, b0, b1, scatter, families = np.random.default_rng(11), 5.0, 1.5, 1.2, 400
+    depths = np.array([12.0, 16.0, 20.0, 24.0, 20.0]) if lined else np.full(5, 20.0)
+    speeds = b0 + b1 * depths + scatter * rng.standard_normal((families, 5))
+    tests = [(1, 3600, 30.0, *[depth] * 6, 64) for depth in depths]
+    book = entered(read("crush-energy"), tests, {"b0_1": b0, "line_1": 1} if lined else {"b0_1": b0})
+    varies = {Cell("Stiffness", FIRST_ROW + i, 4): speeds[:, i] for i in range(5)}
+    names = ["level_1", "pass_1_5", "line_sd_1", "x_tests_1", "Sxx_1"] if lined else ["b1_tests_1", "b1_sd_1"]
+    found = computed_at(book, varies, names)
+    t_level, t_slope = (rng.standard_t(3 if lined else 4, (4_000, families)) for _ in range(2))
+    if lined:
+        level, slope, around, mean, sum_of_squares = (found[name] for name in names)
+        slopes = slope + around / np.sqrt(sum_of_squares) * t_slope
+        predicted = level + around * np.sqrt(1.2) * t_level + slopes * (20.0 - mean)
+    else:
+        centre, deviation = (found[name] for name in names)
+        predicted = b0 + 20.0 * (centre + deviation * np.sqrt(1.2) * t_level)
+    low, high = np.quantile(predicted, [0.1, 0.9], axis=0)
+    following = b0 + b1 * 20.0 + scatter * rng.standard_normal(families)
+    covered = np.mean((low <= following) & (following <= high))
+    assert abs(covered - 0.8) < 4 * np.sqrt(0.8 * 0.2 / families)
 
 
 def test_the_scatter_is_drawn_as_students_t_and_held_without_tests(read):

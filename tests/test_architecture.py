@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parents[1] / "xlmc"
-LAYERS = {"excel", "engine", "montecarlo", "analysis", "outputs", "cli", "api", "errors.py", "data_classes.py"}
+LAYERS = {"excel", "engine", "montecarlo", "analysis", "outputs", "cli", "api", "errors.py"}
 
 
 def test_the_package_has_five_layers_and_what_stands_beside_them():

@@ -7,9 +7,8 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from enum import IntEnum
-
-from xlmc.data_classes import dataclass
 
 __all__ = [
     "DefinitionError",

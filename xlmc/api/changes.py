@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 
 if TYPE_CHECKING:

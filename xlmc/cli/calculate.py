@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -12,7 +13,6 @@ import click
 
 from xlmc.cli.options import FilePath, functions_option, number_style_option
 from xlmc.cli.terminal import paragraph, plain, put, say, say_json
-from xlmc.data_classes import dataclass
 from xlmc.errors import capitalised
 
 if TYPE_CHECKING:

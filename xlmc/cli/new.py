@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from itertools import groupby
 from pathlib import Path
 from typing import Final
@@ -13,7 +14,6 @@ import click
 from xlmc.cli.mistakes import did_you_mean
 from xlmc.cli.options import FilePath, OneOf
 from xlmc.cli.terminal import paragraph, say
-from xlmc.data_classes import dataclass
 from xlmc.errors import WorkbookError
 
 __all__ = ["Template", "new", "templates"]

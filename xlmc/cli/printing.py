@@ -8,13 +8,13 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Collection, Iterator, Sequence
+from dataclasses import dataclass
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Final
 
 import click
 
 from xlmc.cli.terminal import encodable, on_terminal, paragraph, put, say, width
-from xlmc.data_classes import dataclass
 from xlmc.errors import shortened
 from xlmc.excel.workbook.printable import printable
 

@@ -7,10 +7,9 @@ cell was changed, and wherever one of these is read.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.engine.graph.moment import Moment
 from xlmc.engine.saved_values import array_of, faults_of, filled_cells, is_saved_value, same_value

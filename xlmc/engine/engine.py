@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.node_values import corner
 from xlmc.engine.graph.nodes import Target
 from xlmc.excel.functions.values import BLANK, ERROR, TEXT, Bools, Codes, Floats, Objects, Value

@@ -13,12 +13,11 @@ without using derivatives", Advances in Engineering Software 28.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["CONVERGED", "EPSILON", "INTERPOLATIONS", "OWN_STEPS", "SCANNED", "Roots", "find_roots"]
 

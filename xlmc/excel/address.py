@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator
+from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
-
-from xlmc.data_classes import dataclass
 
 __all__ = [
     "MAX_COLUMN",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from xlmc.data_classes import dataclass
+from dataclasses import dataclass
 
 __all__ = ["Iteration"]
 

@@ -12,7 +12,7 @@ import linecache
 import sys
 import traceback
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cache
 from importlib.abc import SourceLoader
 from numbers import Real
@@ -23,7 +23,6 @@ from typing import Any, Final, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode, FormulaError, WorkbookError
 from xlmc.excel.functions.registry import Cells, Function, Kind, Parameter
 from xlmc.excel.functions.values import BLANK, TEXT, Codes, Value, from_objects, unbox_errors

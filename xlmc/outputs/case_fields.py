@@ -5,10 +5,10 @@ person gives beside it.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from datetime import date, timedelta
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.excel.address import Cell
 from xlmc.excel.functions.dates.date_text import MONTHS

@@ -7,6 +7,7 @@ import io
 import json
 import re
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, BinaryIO, Final
@@ -15,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.results.record import make_record
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError, WorkbookError
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import whole_file

@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
 from xlmc.analysis.results.statements import reach_text
 from xlmc.analysis.results.statements.in_words import discards_of, limits_text
-from xlmc.data_classes import dataclass
 from xlmc.engine.engine import UNDECIDED_RESULT
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from itertools import product
 from typing import Final, TypedDict
 
@@ -15,7 +16,6 @@ from xlmc.analysis.studies.comparison.variations import names_of
 from xlmc.analysis.studies.scenario_answers import ForecastAnswer, ScenarioAnswers, answers_of, model_of, run_scenario
 from xlmc.analysis.studies.shown import Shown
 from xlmc.analysis.studies.steps import Steps
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, SimulationError, XlmcError
 from xlmc.montecarlo.definitions.definitions import Decision
 from xlmc.montecarlo.definitions.scenarios import Scenario, Typed

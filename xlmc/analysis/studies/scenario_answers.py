@@ -10,7 +10,7 @@ the errors of two numbers add up as those of independent ones.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from math import hypot
 from typing import TYPE_CHECKING, Final
 from weakref import WeakKeyDictionary
@@ -18,7 +18,6 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, SimulationError, XlmcError
 from xlmc.montecarlo.columns import numbers
 from xlmc.montecarlo.definitions.definitions import Forecast

@@ -8,11 +8,10 @@ it opens the file.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from xlmc.analysis.studies.scenario_answers import model_of, scenario_named
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, ErrorCode, WorkbookError
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.formats import other_format

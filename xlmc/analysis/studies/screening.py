@@ -19,6 +19,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from math import log2
 from typing import Final, TypedDict
 
@@ -40,7 +41,6 @@ from xlmc.analysis.studies.comparison.tolerances import (
 from xlmc.analysis.studies.comparison.variations import names_of_rows, with_changes, with_plain_sampling
 from xlmc.analysis.studies.shown import Shown
 from xlmc.analysis.studies.steps import Steps, Tell
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption, Forecast

@@ -8,7 +8,7 @@ outwards from the value in the cell, in steps that double, as far as 10¹² time
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.shown import Shown
-from xlmc.data_classes import dataclass
 from xlmc.engine.engines import ENGINES
 from xlmc.engine.roots import find_roots
 from xlmc.errors import DefinitionError, SimulationError

@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Final, TypedDict
 
@@ -34,7 +35,6 @@ from xlmc.analysis.studies.comparison.paired_statistics import (
 )
 from xlmc.analysis.studies.comparison.variations import names_of_rows, with_plain_sampling
 from xlmc.analysis.studies.shown import Shown
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.forms import Form

@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Final, TypedDict
 
@@ -26,7 +27,6 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.comparison.variations import names_of_rows, with_plain_sampling
 from xlmc.analysis.studies.shown import Shown
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.forms import Form

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.engine.saved_values import (
     TOLERANCE,

@@ -7,12 +7,11 @@ a function that xlmc does not compute, and the function with the workbook's sett
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from difflib import get_close_matches
 from functools import cache
 from typing import Any, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import FormulaError
 from xlmc.excel.formula import ir
 from xlmc.excel.functions import Function

@@ -10,12 +10,11 @@ read it are errors, `#CALC!`. A function that would hide the error, as IFERROR d
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final, Protocol
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Range, Select, uses
 from xlmc.engine.graph.picked_ranges import PICKING

@@ -7,9 +7,9 @@ others. Two cells of one stencil that agree in these get nodes of the same patte
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.choices import CHOICES
 from xlmc.engine.graph.graph import Dag, Repeat
 from xlmc.engine.graph.lambdas import LAMBDAS

@@ -9,10 +9,10 @@ do not depend on each other: a trial that has converged is left alone.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.node_values import corner, evaluate_node
 from xlmc.engine.graph.nodes import Apply, IfErrorNode, Range, Select, uses
 from xlmc.engine.graph.recursive_calls import join_trials, spread_trials

@@ -7,11 +7,11 @@ computed once, before the first iteration.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.arrays import element
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.iterated_cells import Formula, Round, Step, iterate

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import random
-from dataclasses import field
+from dataclasses import dataclass, field
 from datetime import datetime
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode
 from xlmc.excel.formula import ir
 from xlmc.excel.functions.dates.dates import serial_at

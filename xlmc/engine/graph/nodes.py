@@ -6,9 +6,9 @@ Elsewhere a node is known by its index in `Dag.nodes`: `node`, or `node_id` wher
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple, assert_never
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions import Function
 from xlmc.excel.functions.values import Value
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.arrays import element, grid, size_of
 from xlmc.engine.graph.computed_references import areas_of, join_areas
 from xlmc.engine.graph.graph import Dag

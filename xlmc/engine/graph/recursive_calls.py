@@ -8,13 +8,12 @@ may be thousands deep.
 from __future__ import annotations
 
 from collections.abc import Generator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.node_values import Ragged, corner, evaluate_node
 from xlmc.engine.graph.nodes import Apply, IfErrorNode, Range, Select, uses
 from xlmc.errors import ErrorCode, FormulaError

@@ -16,10 +16,9 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections import Counter, defaultdict
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.nodes import Apply, Constant, Range
 from xlmc.excel.address import Area, Cell

@@ -9,10 +9,9 @@ from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.arrays import NodeBuilder
 from xlmc.errors import FormulaError
 from xlmc.excel.address import Area, Cell

@@ -8,8 +8,8 @@ not matter; where neither is known, a whole column is refused. An expression of 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.computed_references import join_areas, require
 from xlmc.engine.graph.exposed_ranges import (
     CURVED,

@@ -6,12 +6,12 @@ for the loops that it calls. A `Layout` says what is where.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any, Final
 
 from llvmlite import ir
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.llvm.machine import Machine, NativeLoop
 from xlmc.engine.llvm.uniforms import jump
 

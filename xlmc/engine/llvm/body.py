@@ -11,11 +11,11 @@ one fused instruction. An error of Excel that leaves no trace in arithmetic is a
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from llvmlite import ir
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.nodes import Select
 from xlmc.engine.graph.trial_sets import ALL_TRIALS, DEEPEST_BRANCHES, TrialSet, common_set

@@ -8,12 +8,12 @@ which two numbers that vary nearly agree are left to the careful path.
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from typing import Any, Final
 
 from llvmlite import ir
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Node, Select
 from xlmc.engine.llvm.lookups import lookup_rule

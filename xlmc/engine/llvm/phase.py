@@ -8,13 +8,12 @@ from __future__ import annotations
 import ctypes
 from collections import Counter
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Column, Compilable, column_of
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.node_values import evaluate_node, in_own_memory

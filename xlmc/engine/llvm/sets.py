@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache, reduce
 from typing import Any, Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.nodes import Apply, Constant, Range
 from xlmc.engine.llvm.loop_rules import Emit, Emitter, Literal, LoopRule, Operand, first_operand, part_of

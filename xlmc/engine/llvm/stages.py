@@ -7,12 +7,12 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import chain
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.nodes import Input
 from xlmc.engine.graph.readiness import order_by_need

@@ -7,12 +7,12 @@ constant), a LOGICAL node a bool array (or a bool), any other node a `Value`.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.node_values import Ragged, by_trial, evaluate_node, in_own_memory
 from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Range, Select, uses

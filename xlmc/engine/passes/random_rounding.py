@@ -10,12 +10,12 @@ sum that a formula ends with is left out, for these bits are looked for.
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from math import prod
 from typing import Final, Protocol
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.graph.node_values import Ragged, evaluate_node
 from xlmc.engine.graph.nodes import Apply, Constant, IfErrorNode, Input, Node, Range, Select, uses

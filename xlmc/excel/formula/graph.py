@@ -8,12 +8,12 @@ formula in another cell fills (`Spills`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import chain
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import FormulaError
 from xlmc.excel.address import Area, Cell, host_of
 from xlmc.excel.formula import ir

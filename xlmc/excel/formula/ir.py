@@ -7,10 +7,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final, assert_never
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Area, Cell
 

@@ -7,10 +7,9 @@ down has one shape, and is parsed once. Excel shows the text without the prefixe
 from __future__ import annotations
 
 import re
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final, NamedTuple
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Cell, column_letters, column_number
 from xlmc.excel.formula import ir
 from xlmc.excel.formula.parse import parse_cell

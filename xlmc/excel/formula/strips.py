@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Iterator, Mapping, Set
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import chain
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import Area, Cell
 
 __all__ = ["Needs", "Part", "Stretch", "Strips"]

@@ -7,10 +7,9 @@ which nothing is known: it may cost time, or refuse a formula, or leave a note o
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from enum import Enum
 from typing import Final
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["NOTHING", "Domain", "EmptyCells", "Facts", "Repeats"]
 

@@ -24,14 +24,13 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.budget import work_arrays
 from xlmc.excel.functions.denormals import TINIEST
 from xlmc.excel.functions.facts import Facts

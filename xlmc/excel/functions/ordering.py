@@ -16,13 +16,12 @@ import unicodedata
 from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Final, NamedTuple
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.lookup.picked_cells import Indices, flatten_cells
 from xlmc.excel.functions.values import ERROR, TEXT, Codes, Floats, Objects, Value, kept_with_table
 

@@ -7,11 +7,11 @@ In a range only numbers count; a value given directly is converted as in arithme
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import wraps
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.arguments import align_ranges, errors_unless_range, first_error, first_error_in_row
 from xlmc.excel.functions.lookup.picked_cells import flatten_cells, join_cells
 from xlmc.excel.functions.values import NA, NUMBER, Bools, Codes, Floats, Value

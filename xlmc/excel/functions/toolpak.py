@@ -12,13 +12,12 @@ even if the workbook counts from 1904.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import wraps
 from typing import Any, Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode
 from xlmc.excel.functions.arguments import align_ranges, first_error
 from xlmc.excel.functions.dates.calendar import in_calendar

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import io
 import zipfile
+from dataclasses import dataclass
 from typing import Final
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["FORMATS", "ODS", "XLS", "XLSB", "OtherFormat", "is_encrypted_package", "other_format"]
 

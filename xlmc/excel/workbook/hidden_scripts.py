@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.package import relationships
 from xlmc.excel.workbook.safe_xml import decode, tree

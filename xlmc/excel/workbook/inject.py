@@ -11,8 +11,8 @@ import dataclasses
 import json
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import dataclass
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.injection.app_properties import list_sheets, unlist_sheets
 from xlmc.excel.workbook.injection.book_edit import (

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell, column_letters
 from xlmc.excel.workbook.printable import label

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import column_number
 from xlmc.excel.workbook.package import relationships
 from xlmc.excel.workbook.safe_xml import tree

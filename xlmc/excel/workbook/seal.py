@@ -15,12 +15,12 @@ import hashlib
 import json
 import re
 from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 from typing import BinaryIO, Final
 from urllib.parse import quote, unquote
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.injection.book_edit import add_pointers
 from xlmc.excel.workbook.injection.content_types import add_types

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from math import isfinite
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.address import MAX_COLUMN, MAX_ROW, Area, Cell, column_letters, column_number
 from xlmc.excel.workbook.safe_xml import REPAIR, decode, expat_parser, feed, is_true, run_text, whole_number

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import Notice, WorkbookError
 from xlmc.excel.address import Area, Cell, parse_address
 from xlmc.excel.iteration import Iteration

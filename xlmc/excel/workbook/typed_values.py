@@ -6,11 +6,11 @@ import csv
 import io
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from math import isinf
 from pathlib import Path
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.places import changeable_cell

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode, Notice
 from xlmc.excel.address import Area, Cell, parse_address
 from xlmc.excel.iteration import Iteration

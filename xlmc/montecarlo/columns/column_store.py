@@ -16,14 +16,13 @@ import tempfile
 import weakref
 from collections.abc import Hashable, Iterable, Iterator, Mapping
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.cache_lines import CACHE_LINE
 from xlmc.errors import SimulationError
 from xlmc.excel.workbook.temporary_names import new_folder_name, owned, remove_abandoned_folders

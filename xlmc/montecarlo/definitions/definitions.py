@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, ErrorCode, FormulaError, Notice
 from xlmc.excel.address import Area, Cell, InFormula
 from xlmc.excel.formula.ir import Expression

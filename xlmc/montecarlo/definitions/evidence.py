@@ -7,13 +7,12 @@ model's quantity, R the reading, z the distance of the two in standard deviation
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import ir
 

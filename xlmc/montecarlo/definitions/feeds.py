@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.distributions.spelling import name_key
 

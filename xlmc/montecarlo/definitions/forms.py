@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 import re
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import FormulaError
 from xlmc.excel.functions.number_format import FormatError, UnknownFormat, parse_format
 from xlmc.montecarlo.definitions.stating import Kind

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import ParamSpec, TypeVar
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, Notice
 
 __all__ = ["Findings"]

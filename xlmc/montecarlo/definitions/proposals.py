@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Iterator
+from dataclasses import dataclass
 from itertools import islice
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.lowering import lower_cells
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.excel.address import Area, Cell, column_letters

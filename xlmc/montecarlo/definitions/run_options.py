@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import fields, replace
+from dataclasses import dataclass, fields, replace
 from numbers import Integral, Real
 from typing import Any, Final, TypedDict
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.run_settings import SETTINGS, Setting, Settings, check_settings
 from xlmc.montecarlo.definitions.stopping import LIMIT, NO_GOAL, Stopping, WholeGoal, stopping

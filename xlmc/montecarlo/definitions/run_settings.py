@@ -8,10 +8,10 @@ docs/workbooks.md. What ends a run is a goal: see `stopping`.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any, Final, Literal
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.engines import ENGINES
 from xlmc.montecarlo.definitions.evidence_methods import EVIDENCE_METHODS
 from xlmc.montecarlo.definitions.number_styles import STYLES, style_key

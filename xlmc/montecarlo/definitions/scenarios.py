@@ -7,9 +7,8 @@ To change a table's row is to type other numbers into its cells. These classes o
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import CellValue
 from xlmc.montecarlo.definitions.distribution import Distribution

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 from numbers import Integral
 from typing import Any
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 
 __all__ = ["Kind", "Names", "Seconds", "Switch", "Whole", "Word"]

@@ -6,10 +6,8 @@ Sentences name the words that depend on it in braces: `{model_error}`.
 
 from __future__ import annotations
 
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING, Final
-
-from xlmc.data_classes import dataclass
 
 if TYPE_CHECKING:
     from xlmc.excel.workbook.workbook import Workbook

@@ -10,10 +10,9 @@ Source: the module UserInterface of XLRisk, which makes the sheet (github.com/py
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.excel.address import Area, Cell, parse_address
 from xlmc.excel.formula import Resolver

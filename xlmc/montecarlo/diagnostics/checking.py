@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.engine import BLANK_RESULT, TEXT_RESULT
 from xlmc.errors import ErrorCode
 from xlmc.montecarlo.loop.blocks import portions

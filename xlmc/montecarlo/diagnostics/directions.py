@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import Notice
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
 from xlmc.montecarlo.number_text import number_text, styled_text

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.address import Cell, host_of
 from xlmc.excel.formula import ir

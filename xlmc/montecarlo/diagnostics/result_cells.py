@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.lowering import Lowering, lower_until_complete
 from xlmc.engine.saved_values import array_of, faults_of
 from xlmc.errors import ErrorCode, FormulaError

@@ -8,13 +8,12 @@ far from the reading in nearly all trials, that uses what rejection throws away.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Filter
 from xlmc.montecarlo.definitions.evidence_methods import EVIDENCE_METHODS

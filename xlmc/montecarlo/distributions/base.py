@@ -11,12 +11,12 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.distributions.parameters import Constraint, DataSpec, Fault, ParameterSpec, Role, show
 
 __all__ = ["LARGEST", "SMALLEST_U", "TRIED_U", "Array", "Family", "Member", "Values", "ends", "point_where", "share"]

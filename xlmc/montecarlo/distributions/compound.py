@@ -11,13 +11,13 @@ E[S] = E[N]·E[Y] and Var[S] = E[N]·Var[Y] + Var[N]·E[Y]², with Y what is lef
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.distributions.base import LARGEST, Array, Family, Member, Values
 from xlmc.montecarlo.distributions.parameters import Fault, ParameterSpec, show
 from xlmc.montecarlo.distributions.quadrature import gauss_legendre

@@ -18,9 +18,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.distributions.base import LARGEST, Array
 from xlmc.montecarlo.distributions.parameters import DataError, show
 from xlmc.montecarlo.distributions.pieces import Piece

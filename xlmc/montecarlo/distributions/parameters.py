@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, Literal
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.number_text import number_text
 
 __all__ = [

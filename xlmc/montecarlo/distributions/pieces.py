@@ -7,11 +7,11 @@ or a range with a density that is flat or slopes in a straight line. `custom_dat
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.distributions.base import Array, Family, Values
 
 __all__ = ["Piece", "Pieces"]

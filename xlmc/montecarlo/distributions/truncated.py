@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.distributions.base import SMALLEST_U, TRIED_U, Array, Family, Member, Values
 from xlmc.montecarlo.distributions.parameters import Fault, show
 

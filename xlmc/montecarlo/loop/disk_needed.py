@@ -7,10 +7,10 @@ only where the trials would not fit in memory if all were accepted, so that it c
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.columns import column_store, free_disk
 from xlmc.montecarlo.loop.blocks import Task

@@ -9,13 +9,12 @@ computed so where its formulas can be; one that shows results of the run, or is 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Target
 from xlmc.engine.graph.lowering import lower_cells
 from xlmc.engine.numpy.numpy_engine import NumpyProgram

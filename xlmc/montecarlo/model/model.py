@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from copy import copy
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Final, Self
@@ -11,7 +12,6 @@ from typing import Final, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Evaluator, Program, Target
 from xlmc.engine.engines import ENGINES
 from xlmc.engine.numpy.numpy_engine import NumpyProgram

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Container, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, Notice
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import Graph, Resolver, build_graph, ir

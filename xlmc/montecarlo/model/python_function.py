@@ -9,6 +9,7 @@ from __future__ import annotations
 import io
 import re
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any, Final, TypedDict
@@ -16,7 +17,6 @@ from typing import Any, Final, TypedDict
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir

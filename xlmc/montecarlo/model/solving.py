@@ -8,13 +8,12 @@ trial without a solution is `#N/A`, one with several `#NUM!`, unless the row say
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Target
 from xlmc.engine.graph.lowering import Lowering, lower_cells
 from xlmc.engine.numpy.numpy_engine import NumpyProgram

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.number_text import count_text, fixed_text, number_text
 from xlmc.montecarlo.statistics import Estimate, format_estimate
 

@@ -7,13 +7,13 @@ spread. Where the formulas can be undone, that interval is computed in each tria
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.excel.formula.precedents import references

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.rare.proposal import Proposal, fit_proposal, height, refit
 from xlmc.montecarlo.rare.splitting import EXPLORING, Descent, Distance, descend, explore
 from xlmc.montecarlo.rare.unexplained import Evidence, find_unexplained, join_evidence, pool

@@ -7,13 +7,12 @@ formula, through AND, OR, NOT and IF, to the comparisons there. What is no compa
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Column, Target
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir

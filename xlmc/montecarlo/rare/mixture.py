@@ -9,12 +9,11 @@ left out of the fit decide: those of the mixture that gives them the highest lik
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["Mixture", "fit_mixture", "standard_log_density"]
 

@@ -18,13 +18,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.rare.mixture import Mixture, fit_mixture, log_sum, standard_log_density
 
 __all__ = ["COPIED", "Proposal", "Shear", "copies", "fit_proposal", "fit_shear", "height", "refit"]

@@ -14,12 +14,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.rare.learning import Round, Say
 from xlmc.montecarlo.rare.proposal import Proposal, copies, height
 from xlmc.montecarlo.statistics import Estimate

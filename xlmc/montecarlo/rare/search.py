@@ -5,12 +5,12 @@ from __future__ import annotations
 import hashlib
 import math
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.loop.blocks import Block, ModelRunner, Task
 from xlmc.montecarlo.number_text import count_text, number_text
 from xlmc.montecarlo.rare.account import RareAccount

@@ -9,12 +9,11 @@ leave out is found behind them.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["Rearranged", "Spans", "choose", "intersection", "union", "union_of_pairs"]
 

@@ -15,12 +15,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["EXPLORING", "Descent", "Distance", "descend", "explore"]
 

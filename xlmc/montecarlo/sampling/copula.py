@@ -17,6 +17,7 @@ Drezner and Wesolowsky 1990). The largest and the smallest are those of r = ±1,
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from typing import Final
@@ -24,7 +25,6 @@ from typing import Final
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.distributions.quadrature import gauss_legendre
 
 __all__ = [

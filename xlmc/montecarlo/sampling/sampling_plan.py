@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.sampling.latin import LatinHypercube
 from xlmc.montecarlo.sampling.sampling_methods import METHODS, REPLICATES, STRATA, Margin
 from xlmc.montecarlo.sampling.streams import Stream

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import fields
+from dataclasses import dataclass, fields
 
 from numpy.typing import ArrayLike
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.statistics import quantiles, smooth
 from xlmc.montecarlo.statistics.estimate import Estimate
 from xlmc.montecarlo.statistics.mode import mode

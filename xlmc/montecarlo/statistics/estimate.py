@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.number_text import format_estimate
 

@@ -9,12 +9,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.columns import PART, RUN, on_disk, pairwise_sum, passed, release
 from xlmc.montecarlo.interruption import checkpoint
 

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.columns import ascending, parts, picked
 from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.statistics.moments import Moments, moments_of

@@ -7,13 +7,13 @@ read again and run beside the old one: what would give other trials is never wri
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import chain, count
 from pathlib import Path
 from typing import Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, FormulaError, WorkbookError
 from xlmc.excel.address import Cell, InFormula, host_of
 from xlmc.excel.workbook.inject import inject, remove_result_sheets

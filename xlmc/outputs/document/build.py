@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from itertools import count
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.studies.scenario_answers import scenario_answers
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.excel.workbook.printable import label
 from xlmc.montecarlo.definitions.number_styles import in_style_of

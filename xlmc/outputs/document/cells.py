@@ -9,10 +9,9 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from xlmc.analysis.results.statements.in_words import plain_text
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.number_format import FormatError, parse_format
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind

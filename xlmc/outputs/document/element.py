@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cache
 from html import escape
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.interruption import checkpoint
 
 __all__ = ["EMPTY", "Html", "element", "join", "void"]

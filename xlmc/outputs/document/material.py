@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
-
-from xlmc.data_classes import dataclass
 
 if TYPE_CHECKING:
     from xlmc.analysis.results.record import Record

@@ -5,10 +5,9 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.statistics import Estimate, format_estimate
 from xlmc.outputs.document import cells

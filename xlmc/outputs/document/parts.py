@@ -9,11 +9,10 @@ cell that holds one brings its format along.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from datetime import date
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.number_text import signs
 from xlmc.outputs.document.cells import Shown, shown_text

@@ -9,11 +9,10 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 from xml.etree.ElementTree import Element
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.workbook.safe_xml import tree
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.outputs.document.colours import GRID, INK

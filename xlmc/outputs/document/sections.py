@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Final, cast
-
-from xlmc.data_classes import dataclass
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.vocabulary import Vocabulary

@@ -9,13 +9,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from xlmc.analysis.results.saved import keep
 from xlmc.analysis.studies.scenario_workbook import EditedWorkbook, edited_workbook, write_edited
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.target import copy_ending, free_target, refuse_existing, refuse_into_source, unused_path

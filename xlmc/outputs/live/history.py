@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.outputs.live.adjustments import Adjustments
 

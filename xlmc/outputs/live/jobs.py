@@ -7,10 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import nullcontext
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final, Literal
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import XlmcError
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.interruption import looking

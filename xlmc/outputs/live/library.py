@@ -10,10 +10,10 @@ import os
 import re
 import secrets
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.excel.own_functions import OwnFunctions
 from xlmc.excel.workbook.formats import other_format

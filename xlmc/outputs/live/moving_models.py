@@ -11,11 +11,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from importlib.util import find_spec
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import XlmcError
 from xlmc.excel.formula import Graph
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions

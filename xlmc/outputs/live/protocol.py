@@ -73,9 +73,9 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import XlmcError
 from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.live.adjustments import NONE, PARTS

@@ -11,10 +11,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import XlmcError
 from xlmc.montecarlo.definitions.number_styles import in_style, in_style_of
 from xlmc.montecarlo.definitions.run_options import RunOptions

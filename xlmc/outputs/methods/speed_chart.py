@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final, Literal
 
 import numpy as np
@@ -18,7 +18,6 @@ from xlmc.analysis.studies.methods import Curve, Study
 from xlmc.analysis.studies.methods.answer import seconds_text, trials_text
 from xlmc.analysis.studies.methods.law import law
 from xlmc.analysis.studies.methods.need import Choice, Need, choice, reach_of, seconds_of, worst_error
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.number_text import number_text
 from xlmc.outputs.methods.methods_tables import near_text
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import islice
 from typing import Final
 
@@ -9,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.fitting import FEW, Fitted, fit, parameter_texts, share_at_most
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.columns import picked, release
 from xlmc.outputs.histogram import Histogram

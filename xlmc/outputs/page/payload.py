@@ -16,12 +16,12 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.columns import picked, release
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.number_text import number_text, signs

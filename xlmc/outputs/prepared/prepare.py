@@ -6,11 +6,10 @@ Everything else in the file stays byte for byte, but for the parts that any new 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import chain, count
 from pathlib import Path
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Area, Cell

@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any, Final
 
 from xlsxwriter.utility import xl_col_to_name, xl_rowcol_to_cell
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import CellValue
 from xlmc.montecarlo.definitions.tables.settings import setting_names

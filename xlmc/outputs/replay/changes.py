@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from decimal import ROUND_DOWN, ROUND_HALF_EVEN, ROUND_HALF_UP, Context, Decimal
 from typing import TYPE_CHECKING, Final, TypeGuard, TypeVar
 
 from xlmc.analysis.results.record import Record, Value
 from xlmc.analysis.results.record.needed_cells import SAVED, content_text, definition_cells
-from xlmc.data_classes import dataclass
 from xlmc.excel.workbook.workbook import CellValue
 
 if TYPE_CHECKING:

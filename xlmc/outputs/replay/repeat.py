@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
@@ -13,7 +13,6 @@ from xlmc.analysis.results.record.needed_cells import needed_contents, recorded_
 from xlmc.analysis.results.record.record_parts import read_record
 from xlmc.analysis.results.record.settings_table import recorded_settings
 from xlmc.analysis.results.saved import SUFFIX, is_saved_run, open_run
-from xlmc.data_classes import dataclass
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.excel.workbook.lazy_sheets import naming_file
 from xlmc.excel.workbook.reader import read_workbook

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.loop.version import __version__
 
 if TYPE_CHECKING:

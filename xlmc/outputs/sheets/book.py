@@ -7,12 +7,12 @@ describe it in docs/guide.md. docs/adding.md has an example.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.studies.sensitivity import Sensitivities, sensitivities
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.outputs.case_fields import case_of
 from xlmc.outputs.histogram import Figure, figures_of

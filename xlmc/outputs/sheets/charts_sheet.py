@@ -7,9 +7,9 @@ cumulative charts.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.number_text import counted_text
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.histogram import Figure, varying

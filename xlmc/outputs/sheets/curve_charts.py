@@ -13,12 +13,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.columns import release
 from xlmc.montecarlo.statistics import percentiles
 from xlmc.montecarlo.statistics.sample import Sample

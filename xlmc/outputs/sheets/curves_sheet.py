@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from xlmc.data_classes import dataclass
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.sheets.styles import Reference
 

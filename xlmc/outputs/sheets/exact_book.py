@@ -13,6 +13,7 @@ import io
 from array import array
 from collections import defaultdict
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import chain, pairwise
 from types import MethodType
 from typing import Any
@@ -23,8 +24,6 @@ from xlsxwriter.format import Format
 from xlsxwriter.packager import Packager
 from xlsxwriter.utility import xl_col_to_name
 from xlsxwriter.worksheet import CellNumberTuple, CellStringTuple, Worksheet
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["ExactBook", "ExactSheet"]
 

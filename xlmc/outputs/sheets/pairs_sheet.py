@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
 from xlmc.analysis.results.statements import Pair, pairs_of
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown

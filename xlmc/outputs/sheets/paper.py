@@ -8,10 +8,9 @@ are of 11 points on the sheet, then have 6.8 points or more on paper if the shee
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["MARGINS", "MOST_ACROSS", "MOST_UPRIGHT", "SMALLEST", "Layout", "lay_out"]
 

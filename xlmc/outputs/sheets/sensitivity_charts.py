@@ -7,9 +7,9 @@ how the answers move with a filter's limit, one for each forecast.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final, TypeAlias
 
-from xlmc.data_classes import dataclass
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.colours import DARK, GRID, INK, LIGHT
 from xlmc.outputs.document.content.sensitivity import MOST_LINES

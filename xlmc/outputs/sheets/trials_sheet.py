@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.number_text import count_text, counted_text

@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Iterable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.outputs.document.cells import BLANK, Shown, shown_text, spread_format
 from xlmc.outputs.document.colours import DARK, INK, LIGHT

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -19,7 +20,6 @@ from xlmc.analysis.results.statements.in_words import (
     parameters_text,
     status,
 )
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.stating import Role
 from xlmc.montecarlo.model.cell_forms import content_in, forms_of

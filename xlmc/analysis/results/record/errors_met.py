@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record.needed_cells import content_text
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell, host_of
 from xlmc.montecarlo.diagnostics.cell_errors import Root

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.workbook.lazy_sheets import LazySheets
 from xlmc.excel.workbook.workbook import CellContent, Sheet, Workbook

@@ -7,7 +7,7 @@ import json
 import zipfile
 from collections import Counter
 from collections.abc import Hashable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Final
 
@@ -31,7 +31,6 @@ from xlmc.analysis.results.saved.run_json import (
     texts,
     whole,
 )
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError, WorkbookError, XlmcError
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir

@@ -5,13 +5,12 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Mapping
-from dataclasses import MISSING, asdict, fields, is_dataclass, replace
+from dataclasses import MISSING, asdict, dataclass, fields, is_dataclass, replace
 from types import NoneType
 from typing import Any, Final, TypeVar, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.run_settings import Settings, check_settings
 from xlmc.montecarlo.definitions.stopping import GOALS, Goal, Stopping, WholeGoal, only_one
 from xlmc.montecarlo.loop.blocks import FilterTally

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, DataRange, Definitions, Filter, Parameter
 from xlmc.montecarlo.definitions.evidence import ERRORS, SIZES, Evidence, Within

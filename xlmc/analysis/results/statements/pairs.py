@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from itertools import combinations, islice
 from typing import TYPE_CHECKING, Final
 
@@ -15,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.results.statements.significant_digits import rounded_value
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.columns import parts
 from xlmc.montecarlo.statistics import Estimate, proportion, rank_correlation, replicated_proportion
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.significant_digits import (
@@ -17,7 +17,6 @@ from xlmc.analysis.results.statements.significant_digits import (
     rounded_range,
     surely_above,
 )
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.stating import Kind, Role
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.parameters import range_text

@@ -13,6 +13,7 @@ is in the formulas or in values that are held.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Final
 
@@ -21,7 +22,6 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.results.statements.in_words import distribution_text
 from xlmc.analysis.studies.comparison.variations import with_changes
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.definitions import Assumption, Filter
 from xlmc.montecarlo.definitions.units import factor_between
 from xlmc.montecarlo.distributions.spelling import name_key

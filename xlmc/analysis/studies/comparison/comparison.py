@@ -7,6 +7,7 @@ with itself, as it is and with an assumption drawn from what another book answer
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from math import ceil, inf
 from typing import TypedDict
 
@@ -27,7 +28,6 @@ from xlmc.analysis.studies.comparison.tolerances import (
 from xlmc.analysis.studies.comparison.variations import with_plain_sampling
 from xlmc.analysis.studies.shown import Shown
 from xlmc.analysis.studies.steps import Steps
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.units import factor_between

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 import numpy as np
 
 from xlmc.analysis.studies.comparison.differences import Acceptance, Difference
 from xlmc.analysis.studies.comparison.tolerances import Judgement
-from xlmc.data_classes import dataclass
 
 __all__ = ["Cost"]
 

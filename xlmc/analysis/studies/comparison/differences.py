@@ -15,7 +15,7 @@ Barrio, Giné & Matrán 1999).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from math import isnan
 
 import numpy as np
@@ -34,7 +34,6 @@ from xlmc.analysis.studies.comparison.paired_statistics import (
     standard_deviation_of,
 )
 from xlmc.analysis.studies.comparison.tolerances import chance_tolerance
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.simulation.simulation import RunResult

@@ -13,14 +13,13 @@ it as the ends of both together (Newcombe 1998, method 10, for shares of the sam
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate, Sample

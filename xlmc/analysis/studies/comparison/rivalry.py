@@ -11,6 +11,7 @@ differences, trial by trial, of the trials that both accept. Inputs that both dr
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import Enum
 from typing import Final
 
@@ -25,7 +26,6 @@ from xlmc.analysis.studies.comparison.paired_statistics import (
     range_of,
     standard_deviation_of,
 )
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.diagnostics.agreement import INCONSISTENT, STRAINED
 from xlmc.montecarlo.distributions.spelling import name_key

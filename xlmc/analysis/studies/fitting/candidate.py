@@ -9,13 +9,12 @@ Shapes: `x` are the values `(n,)`, in rising order; parameters are numbers in th
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["INFORMATION", "Candidate", "Errors", "Floats", "Params", "Unfit", "refuse", "standard_errors"]
 

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from itertools import combinations
 from typing import Final
 
@@ -21,7 +22,6 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.fitting.candidate import Unfit
 from xlmc.analysis.studies.fitting.fit import KINDS, Fitted, Fitting, fit
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.statistics import Estimate, proportion, rank_correlation
 

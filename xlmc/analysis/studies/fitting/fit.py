@@ -7,7 +7,7 @@ hold for a distribution that was known beforehand, and are far too large for one
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -17,7 +17,6 @@ from xlmc.analysis.studies.fitting.closed_forms import CLOSED_FORMS
 from xlmc.analysis.studies.fitting.count_families import COUNTS
 from xlmc.analysis.studies.fitting.skewed_forms import SKEWED_FORMS
 from xlmc.analysis.studies.fitting.solved_forms import SOLVED_FORMS, TRIANGULAR
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.number_text import count_text, number_text

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.number_text import count_text, fixed_text, number_text, styled_text

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from typing import Final
 
@@ -13,7 +13,6 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.methods.answer import Answer, Extreme, extremes_of
 from xlmc.analysis.studies.methods.quantile_need import QuantileNeed, quantile_need
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.montecarlo import statistics
 from xlmc.montecarlo.definitions.definitions import Forecast

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -10,7 +11,6 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.methods.answer import Answer, Errors, MethodResult
 from xlmc.analysis.studies.methods.points import Evaluation, assumptions_of, box_of
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.number_text import count_text
 

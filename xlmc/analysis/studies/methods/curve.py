@@ -7,7 +7,7 @@ about on a straight line over the length of the runs.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from statistics import median
 from typing import Final
 
@@ -16,7 +16,6 @@ from numpy.typing import ArrayLike
 
 from xlmc.analysis.studies.methods.answer import STATISTICS, Method, MethodResult
 from xlmc.analysis.studies.methods.converged_reference import Reference
-from xlmc.data_classes import dataclass
 
 __all__ = ["NORMAL_95", "Curve", "Rms", "Runs", "in_order", "rms_of", "runs_of", "slope_of"]
 

@@ -10,6 +10,7 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +18,6 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.methods.answer import Answer, Errors, MethodResult, answer_of
 from xlmc.analysis.studies.methods.expansion import draw_assumptions, expansion_of
 from xlmc.analysis.studies.methods.points import box_of
-from xlmc.data_classes import dataclass
 from xlmc.engine.passes.derivatives import Derivative
 from xlmc.montecarlo.model.model import CompiledModel
 

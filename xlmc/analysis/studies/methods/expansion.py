@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.derivatives import derivatives
-from xlmc.data_classes import dataclass
 from xlmc.engine.passes.derivatives import Derivative, Derivatives
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.distributions.base import Member

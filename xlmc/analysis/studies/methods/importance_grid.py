@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Final
 
@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.methods.answer import Errors, Extreme, MethodResult, answer_of, extremes_of
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.loop.blocks import Task
 from xlmc.montecarlo.loop.scheduling.run_spec import model_runner

@@ -15,6 +15,7 @@ The error of `n` trials is c·n^s, and 95 of 100 runs lie within hypot(1.96·c·
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -23,7 +24,6 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.methods.answer import STATISTICS
 from xlmc.analysis.studies.methods.curve import NORMAL_95, Curve, Rms, Runs, slope_of
 from xlmc.analysis.studies.methods.study import Study
-from xlmc.data_classes import dataclass
 
 __all__ = ["Law", "law"]
 

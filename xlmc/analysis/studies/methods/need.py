@@ -6,7 +6,7 @@ Of a method that gives its answer once, the question is whether that answer is n
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final, Literal, TypeVar
 
 import numpy as np
@@ -16,7 +16,6 @@ from xlmc.analysis.studies.methods.curve import NORMAL_95, Curve, Runs
 from xlmc.analysis.studies.methods.law import CONFIDENCE, law
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
 from xlmc.analysis.studies.methods.study import Study
-from xlmc.data_classes import dataclass
 
 __all__ = [
     "ENGINE_READY",

@@ -13,7 +13,7 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import Any, Final, Generic, TypeVar
 
@@ -23,7 +23,6 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.derivatives import derivatives
 from xlmc.analysis.studies.methods.answer import Answer, Errors, Extreme, MethodResult
 from xlmc.analysis.studies.methods.points import Box, Evaluation, box_of
-from xlmc.data_classes import dataclass
 from xlmc.engine.passes.derivatives import Derivative
 from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell

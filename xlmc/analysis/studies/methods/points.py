@@ -7,12 +7,12 @@ Letters: n points, k assumptions, f forecasts, c filter cells.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Target
 from xlmc.engine.numpy.numpy_engine import NumpyProgram
 from xlmc.excel.address import Cell

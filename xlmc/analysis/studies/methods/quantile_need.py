@@ -8,12 +8,11 @@ over the tolerance, this is the usual error √(p(1 − p))/(f·√n); where it 
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 from numpy.typing import NDArray
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["QuantileNeed", "quantile_need"]
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -19,7 +20,6 @@ from xlmc.analysis.studies.methods.need import ENGINE_READY, NO_TIME, Choice, Ne
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO, Sampled
 from xlmc.analysis.studies.methods.study import Study
 from xlmc.analysis.studies.steps import ended_early
-from xlmc.data_classes import dataclass
 from xlmc.errors import capitalised
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.stating import Kind

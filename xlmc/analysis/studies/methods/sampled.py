@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import time
+from dataclasses import dataclass
 
 from xlmc.analysis.studies.methods.answer import Errors, MethodResult, answer_of, extremes_of
-from xlmc.data_classes import dataclass
 from xlmc.engine.engines import ENGINES
 from xlmc.montecarlo.loop.sobol_order import PILOT_TRIALS
 from xlmc.montecarlo.model.model import CompiledModel

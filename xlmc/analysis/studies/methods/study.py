@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from statistics import median
 from typing import Any, Final
 
@@ -27,7 +27,6 @@ from xlmc.analysis.studies.methods.sampled import ENGINE_VARIANTS, MONTE_CARLO, 
 from xlmc.analysis.studies.methods.surrogate import Surrogate
 from xlmc.analysis.studies.shown import Shown
 from xlmc.analysis.studies.steps import Steps, Tell
-from xlmc.data_classes import dataclass
 from xlmc.errors import FormulaError, SimulationError
 from xlmc.montecarlo.definitions.amounts import as_tolerance
 from xlmc.montecarlo.definitions.forms import span_text

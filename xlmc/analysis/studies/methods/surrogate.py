@@ -10,7 +10,7 @@ stands, the filters too.
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Final
 
 import numpy as np
@@ -18,7 +18,6 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.methods.answer import Errors, MethodResult, answer_of
 from xlmc.analysis.studies.methods.points import Evaluation
-from xlmc.data_classes import dataclass
 from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Assumption

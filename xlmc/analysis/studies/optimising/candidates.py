@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from itertools import product
 from typing import Final
 
@@ -12,7 +12,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.optimising.measures import Goal, Measured, Requirement, apart
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.definitions import Decision
 from xlmc.montecarlo.loop.candidates import CandidateTrials, Values
 

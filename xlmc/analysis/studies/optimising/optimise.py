@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from statistics import NormalDist
 from typing import Final, TypedDict
 
@@ -23,7 +23,6 @@ from xlmc.analysis.studies.optimising.search import search
 from xlmc.analysis.studies.optimising.selection import Rival, indifference_of, judged, leader, race, rivals_of
 from xlmc.analysis.studies.scenario_workbook import edited_workbook
 from xlmc.analysis.studies.shown import Shown
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.montecarlo.definitions.definitions import Decision

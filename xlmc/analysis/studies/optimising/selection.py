@@ -14,13 +14,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from statistics import NormalDist
 from typing import Final
 
 import numpy as np
 
 from xlmc.analysis.studies.optimising.candidates import SURE, Ended, Standing, Tried
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.loop.candidates import Values
 from xlmc.montecarlo.number_text import count_text
 

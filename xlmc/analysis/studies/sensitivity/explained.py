@@ -17,7 +17,7 @@ Jennen-Steinmetz 1986).
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -26,7 +26,6 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.sensitivity.given_data import fit_lines, standardise
 from xlmc.analysis.studies.sensitivity.pull_errors import Units
 from xlmc.analysis.studies.sensitivity.ranked import Classes, Ranked
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.statistics import Estimate
 
 __all__ = ["Explained", "explained"]

@@ -13,6 +13,7 @@ same bits whatever adds them up, in whatever order and number of threads.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -20,7 +21,6 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.sensitivity.given_data import standardise
 from xlmc.analysis.studies.sensitivity.ranked import Ranked
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.interruption import checkpoint
 
 __all__ = ["LOOK_TRIALS", "FirstLook", "first_look"]

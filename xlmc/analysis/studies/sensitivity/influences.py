@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
@@ -28,7 +28,6 @@ from xlmc.analysis.studies.sensitivity.given_data import (
 from xlmc.analysis.studies.sensitivity.measures import Influence
 from xlmc.analysis.studies.sensitivity.pull_errors import Units
 from xlmc.analysis.studies.sensitivity.ranked import Ranked
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.columns import picked
 from xlmc.montecarlo.interruption import checkpoint
 

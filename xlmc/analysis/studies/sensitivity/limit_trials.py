@@ -7,6 +7,7 @@ running some of the run's first trials again, with the same draws, no more than 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
@@ -14,7 +15,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.sensitivity.moved_limit import LimitTrials, grid, holds_to
-from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Target
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.interruption import checkpoint

@@ -6,9 +6,9 @@ Nothing here is an array. Every number that comes from trials is an `Estimate`: 
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.number_text import styled_text

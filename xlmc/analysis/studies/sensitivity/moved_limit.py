@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -15,7 +16,6 @@ from numpy.typing import NDArray
 
 from xlmc.analysis.studies.sensitivity.measures import LimitAnswer, LimitPoint, Slope
 from xlmc.analysis.studies.sensitivity.pull_errors import Units
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.statistics import Estimate, Sample, central_interval, proportion
 from xlmc.montecarlo.statistics.estimate import with_error
 from xlmc.montecarlo.statistics.sample import MOST_GROUPS

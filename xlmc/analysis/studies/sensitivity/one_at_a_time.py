@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.sensitivity.measures import PERCENTS, Bar
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.statistics.estimate import finite

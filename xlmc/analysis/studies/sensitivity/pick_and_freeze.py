@@ -14,13 +14,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.studies.sensitivity.pull_errors import Units
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.loop.blocks import portions
 from xlmc.montecarlo.statistics import Estimate
 

@@ -6,10 +6,11 @@ hypercube or scrambled Sobol run, within which trials depend on each other.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.montecarlo.statistics.estimate import LEAST_DOF, with_error

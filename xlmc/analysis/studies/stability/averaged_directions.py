@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -11,7 +12,6 @@ import numpy as np
 from xlmc.analysis.studies.stability.case import Case, Floats
 from xlmc.analysis.studies.stability.digit_findings import Finding, Level
 from xlmc.analysis.studies.stability.formula_trees import replace_part, terms
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.nodes import Constant
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir

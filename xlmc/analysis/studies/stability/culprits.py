@@ -7,13 +7,13 @@ are tried: the culprit is the innermost part whose exact value, put in instead o
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
 from xlmc.analysis.studies.stability.case import Case, Floats
 from xlmc.analysis.studies.stability.formula_trees import factors, terms
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.nodes import Input
 from xlmc.engine.passes.random_rounding import closure, evaluate, evaluate_changes, formula_of, numbers_of
 from xlmc.excel.address import Cell

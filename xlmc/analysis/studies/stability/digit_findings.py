@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.studies.shown import Shown
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.number_text import number_text
 

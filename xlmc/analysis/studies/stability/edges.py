@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -11,7 +12,6 @@ import numpy as np
 from xlmc.analysis.studies.stability.case import Bools, Case, Floats
 from xlmc.analysis.studies.stability.digit_findings import Finding, Level
 from xlmc.analysis.studies.stability.formula_trees import terms
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.nodes import Constant
 from xlmc.engine.passes.random_rounding import numbers_of
 from xlmc.excel.address import Cell

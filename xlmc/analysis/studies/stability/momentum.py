@@ -15,11 +15,10 @@ A form is shown only after 50 digits have confirmed it.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 from xlmc.analysis.studies.stability.case import Case
 from xlmc.analysis.studies.stability.formula_trees import factors, terms
-from xlmc.data_classes import dataclass
 from xlmc.excel.formula import ir
 
 __all__ = ["Momentum", "angle_of", "components", "sine", "spin", "times"]

@@ -9,6 +9,7 @@ change with the angle needs no guard.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -19,7 +20,6 @@ from xlmc.analysis.studies.stability.digit_findings import Finding, Level
 from xlmc.analysis.studies.stability.formula_trees import factors
 from xlmc.analysis.studies.stability.momentum import times
 from xlmc.analysis.studies.stability.rewriting import with_quadrant
-from xlmc.data_classes import dataclass
 from xlmc.engine.graph.node_values import Ragged
 from xlmc.engine.graph.nodes import Apply, uses
 from xlmc.engine.passes.random_rounding import evaluate_changes, formula_of

@@ -10,12 +10,12 @@ ACOS(SIN(a)·SIN(b)+COS(a)·COS(b)·COS(c))                    h = SIN((a-b)/2)^
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
 from fractions import Fraction
 from typing import Final
 
 from xlmc.analysis.studies.stability.momentum import times
 from xlmc.analysis.studies.stability.polynomials import ONE, Monomial, Polynomial, Polynomials
-from xlmc.data_classes import dataclass
 from xlmc.excel.formula import ir
 
 __all__ = [

@@ -8,6 +8,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
@@ -15,7 +16,6 @@ import numpy as np
 from xlmc.analysis.studies.stability.case import Case
 from xlmc.analysis.studies.stability.formula_trees import factors, terms
 from xlmc.analysis.studies.stability.momentum import angle_of, components, sine, spin, times
-from xlmc.data_classes import dataclass
 from xlmc.engine.passes.exact import Exact, as_double
 from xlmc.engine.passes.random_rounding import closure
 from xlmc.excel.address import Cell

@@ -6,6 +6,7 @@ A cell is named where it loses more than the cells that it depends on; cells tha
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from typing import Final
 
@@ -26,7 +27,6 @@ from xlmc.analysis.studies.stability.digit_findings import CellDigits, Finding, 
 from xlmc.analysis.studies.stability.rewriting import of_small_changes, same, without_cosine
 from xlmc.analysis.studies.stability.stable_forms import LOGARITHMS
 from xlmc.analysis.studies.stability.steadying import steady_form
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import Cell
 from xlmc.excel.formula import ir
 from xlmc.montecarlo.diagnostics.digit_watch import DUST, MOST_OF_SPREAD

@@ -7,13 +7,12 @@ of derivatives begins with one or two `a`; then comes the shape of the value, or
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.values import Bools, Floats, Value
 
 __all__ = ["Jet", "align", "by_value", "chain", "concatenate", "flat"]

@@ -9,11 +9,11 @@ estimate, and at a smaller share where the function turns or jumps within these 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.passes.derivatives.jet import Jet, align, chain
 from xlmc.engine.passes.derivatives.rules import Operand, Outcome
 from xlmc.excel.functions import Function

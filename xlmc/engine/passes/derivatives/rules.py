@@ -6,12 +6,12 @@ A rule gets the function, its result and its operands; the value is never comput
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.passes.derivatives.jet import Jet, chain
 from xlmc.excel.functions import Function
 from xlmc.excel.functions.values import Floats, Value

@@ -9,9 +9,9 @@ are computed.
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.dates.calendar import SECONDS_A_DAY, in_calendar, parts_of, serial_of
 
 __all__ = ["MONTHS", "parse_date", "parse_moment", "parse_time"]

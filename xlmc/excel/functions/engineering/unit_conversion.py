@@ -7,14 +7,13 @@ and the atomic mass unit are those of CODATA 2006.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.arguments import align_ranges, first_error
 from xlmc.excel.functions.registry import excel
 from xlmc.excel.functions.toolpak import OneCell, strict_numbers

@@ -6,12 +6,12 @@ Dates are serials of the 1900 system.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.dates.calendar import parts_of
 from xlmc.excel.functions.dates.day_count import (
     by_basis,

@@ -7,12 +7,12 @@ values of any kind.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import ClassVar, Final
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.budget import work_arrays
 from xlmc.excel.functions.facts import Facts
 from xlmc.excel.functions.lookup.index_and_address import index

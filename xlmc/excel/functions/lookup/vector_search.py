@@ -15,11 +15,11 @@ last of equal neighbours. Apache POI describes this behaviour of Excel (`LookupU
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.criteria import is_pattern, pattern_of
 from xlmc.excel.functions.lookup.picked_cells import Indices
 from xlmc.excel.functions.ordering import Ordered, search_each_trial

@@ -7,11 +7,11 @@ out of the ranges, as `Skips` says, or makes them blank.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.functions.arguments import align_ranges, error_everywhere, whole_numbers
 from xlmc.excel.functions.logical import choose

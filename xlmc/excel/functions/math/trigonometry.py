@@ -12,11 +12,11 @@ The cosine as (1 - T²) / (1 + T²) would be quicker and loses digits where it i
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.budget import work_arrays
 from xlmc.excel.functions.facts import Domain, Facts
 from xlmc.excel.functions.registry import Number, excel

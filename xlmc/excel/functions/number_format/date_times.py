@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.dates.calendar import SECONDS_A_DAY, last_serial, parts_of, weekday_of
 from xlmc.excel.functions.dates.date_text import MONTHS
 from xlmc.excel.functions.number_format.placeholders import Written

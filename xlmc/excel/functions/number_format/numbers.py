@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from decimal import ROUND_HALF_UP, Context, Decimal
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.number_format.placeholders import (
     Written,
     count_digits,

@@ -6,10 +6,10 @@ Digits go into the placeholders `0`, `#` and `?`: an unused `0` writes 0, `?` a 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from decimal import ROUND_HALF_UP, Context, Decimal
 from typing import Final, Protocol
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.number_format.tokens import FormatError, Mark, Token, literal
 from xlmc.excel.functions.number_text import round_to_15_digits
 

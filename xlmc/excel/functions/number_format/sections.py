@@ -10,10 +10,10 @@ from __future__ import annotations
 import operator
 import re
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.functions.number_format.date_times import MomentLayout, is_moment, moment_layout
 from xlmc.excel.functions.number_format.numbers import decimal_layout, exponent_layout, fraction_layout
 from xlmc.excel.functions.number_format.placeholders import (

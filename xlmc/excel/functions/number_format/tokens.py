@@ -10,10 +10,9 @@ token    = '"' text '"' | "\" any | "_" any (a space of its width) | "*" any (fi
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from enum import Enum, auto
 from typing import Final
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["FormatError", "Mark", "Token", "UnknownFormat", "literal", "tokenise"]
 

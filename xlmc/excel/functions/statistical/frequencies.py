@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode
 from xlmc.excel.functions.arguments import error_where, first_error, require_same_in_all_trials
 from xlmc.excel.functions.facts import EmptyCells, Facts

@@ -11,11 +11,11 @@ to right: a trial has the same bits alone and among others.
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode
 from xlmc.excel.functions.arguments import error_where, first_error, first_error_in_row, require_same_in_all_trials
 from xlmc.excel.functions.facts import Facts

@@ -8,10 +8,10 @@ workbook's sheets, was stale before: it stays as it is.
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
 from html import escape
 from itertools import islice
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.workbook.injection.part_numbers import quoted
 from xlmc.excel.workbook.injection.splice import Element, SplicedXml, render
 

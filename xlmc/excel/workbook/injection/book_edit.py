@@ -8,10 +8,10 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from itertools import chain
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.injection.result_sheet import SheetName
 from xlmc.excel.workbook.injection.splice import OFFICE_RELATIONSHIPS, Element, SplicedXml, render

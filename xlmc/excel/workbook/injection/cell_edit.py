@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import ErrorCode, WorkbookError
 from xlmc.excel.address import Area, Cell, column_letters, parse_address
 from xlmc.excel.workbook.injection.splice import Element, SplicedXml, cell_text, render

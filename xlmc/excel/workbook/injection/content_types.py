@@ -6,8 +6,8 @@ And the five parts of a package that adding sheets may change, found by the role
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
+from dataclasses import dataclass
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.injection.splice import Element, SplicedXml, render
 from xlmc.excel.workbook.package import CONTENT_TYPES, relationships, rels_part, stored_part

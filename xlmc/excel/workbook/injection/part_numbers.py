@@ -7,10 +7,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import count
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.workbook.package import CONTENT_TYPES, folded_names, relationships, rels_part
 from xlmc.excel.workbook.safe_xml import tree
 

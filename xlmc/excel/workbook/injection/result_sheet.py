@@ -10,11 +10,10 @@ from __future__ import annotations
 import posixpath
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import field
+from dataclasses import dataclass, field
 from html import escape, unescape
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.workbook.injection.content_types import roles
 from xlmc.excel.workbook.injection.part_numbers import TableNumbers, rename_in_formula
 from xlmc.excel.workbook.injection.splice import Element, SplicedXml, parse_spans

@@ -8,8 +8,8 @@ workbook has already is used again, so repeated runs add nothing.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
+from dataclasses import dataclass
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.workbook.injection.splice import MAIN, Element, SplicedXml, parse_spans, render
 from xlmc.excel.workbook.injection.strict import STRICT_MAIN
 from xlmc.excel.workbook.number_formats import BUILT_IN

@@ -10,12 +10,11 @@ from __future__ import annotations
 import io
 import struct
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
 import olefile
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.formats import XLS
 from xlmc.excel.workbook.other_formats.shape_texts import ShapeText, shape_texts

@@ -11,10 +11,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.crystal_ball.object_names import UnreadableError
 from xlmc.montecarlo.definitions.crystal_ball.stored_objects import StoredAssumption
 from xlmc.montecarlo.distributions.spelling import plain

@@ -8,10 +8,9 @@ from __future__ import annotations
 
 import re
 import zlib
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.workbook.hidden_scripts import DamagedDrawing, hidden_scripts
 from xlmc.excel.workbook.structure import read_structure
 from xlmc.excel.workbook.workbook import Workbook

@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, Final, NamedTuple
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.number_text import count_text
 
 __all__ = ["StreamError", "Thing", "read_stream"]

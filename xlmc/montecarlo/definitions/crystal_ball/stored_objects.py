@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from typing import Any, Final
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.definitions.crystal_ball.object_stream import Thing
 
 __all__ = [

@@ -6,12 +6,11 @@ A draw that does not name its base case has its mean for one, as @RISK shows it 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir

@@ -13,10 +13,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Iterable, Iterator
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import Resolver, ir

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import FormulaError
 from xlmc.excel.address import Area, Cell, InFormula
 from xlmc.excel.formula import Resolver, formula_text, ir

@@ -6,9 +6,9 @@ Source: Oracle Crystal Ball Developer's Guide, "Crystal Ball functions"; @RISK's
 from __future__ import annotations
 
 import re
+from dataclasses import dataclass
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import FormulaError
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.formula import ir

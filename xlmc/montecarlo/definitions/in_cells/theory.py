@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Final
 
 import numpy as np
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import FormulaError
 from xlmc.montecarlo.distributions.base import Array, Family, Member
 from xlmc.montecarlo.distributions.compound import Compound

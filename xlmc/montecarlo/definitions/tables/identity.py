@@ -5,9 +5,8 @@ A row says which cell it is about by its own `Value`, by `Cell`, or by a defined
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import DefinedName, Workbook

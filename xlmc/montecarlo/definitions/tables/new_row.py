@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.workbook import Table, Workbook

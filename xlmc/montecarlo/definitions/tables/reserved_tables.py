@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from difflib import SequenceMatcher
 
-from xlmc.data_classes import dataclass
 from xlmc.excel.address import Area, Cell, parse_address
 from xlmc.excel.workbook.printable import label
 from xlmc.excel.workbook.workbook import Table, Workbook

@@ -13,9 +13,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.workbook.workbook import CellContent, CellValue, Workbook

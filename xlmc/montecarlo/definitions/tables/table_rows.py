@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from typing import Final, NoReturn, Protocol
 
-from xlmc.data_classes import dataclass
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.printable import label

@@ -5,11 +5,10 @@ from __future__ import annotations
 import pickle
 import platform
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.engine import Program
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import SimulationError

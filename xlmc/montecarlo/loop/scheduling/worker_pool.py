@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Iterator
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from xlmc.data_classes import dataclass
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.loop.blocks import Block, ModelRunner, Task

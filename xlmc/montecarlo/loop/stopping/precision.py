@@ -14,9 +14,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Final
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.columns import numbers
 from xlmc.montecarlo.definitions.stopping import Precision
 from xlmc.montecarlo.loop.stopping.progress import RunningMoments

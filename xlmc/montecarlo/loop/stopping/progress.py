@@ -7,11 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.data_classes import dataclass
 from xlmc.montecarlo.loop.stopping.rule import Observed
 from xlmc.montecarlo.statistics.estimate import Estimate, with_error, with_relative_error
 from xlmc.montecarlo.statistics.proportions import proportion

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Final
-
-from xlmc.data_classes import dataclass
 
 __all__ = ["ALL_TRIALS", "WITHOUT_GOAL", "Stopped"]
 

@@ -8,7 +8,7 @@ import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
-from xlmc.outputs.replay.changes import Closeness
+from xlmc.outputs.replay.changes import Closeness, same_definition
 
 NUMBERS = st.floats(1e-300, 1e300) | st.floats(-1e300, -1e-300)
 REWRITTEN = Closeness(rewritten=True)
@@ -46,3 +46,32 @@ def test_an_edited_fifteenth_digit_is_seen(number, by):
 @pytest.mark.parametrize(("says", "gives"), [(344.000000000001, 344.0), (0.25000000000001, 0.25), (1e-300, 0.0)])
 def test_a_round_number_is_seen_to_be_edited(says, gives):
     assert not REWRITTEN.equal(says, gives)
+
+
+@pytest.mark.parametrize(
+    ("was", "now"),
+    [
+        ("Low 0.1, High 0.3", "Low 10 %, High 30 %"),
+        ("Low 1000, High 1400", "Low $1,000, High $1,400"),
+        ("at least -1200.5", "at least -1,200.50 €"),
+        ("180000 (=Estimate!B2)", "180,000 (=Estimate!B2)"),
+    ],
+)
+def test_a_definition_is_the_same_however_its_numbers_are_written(was, now):
+    assert same_definition(was, now)
+
+
+@pytest.mark.parametrize(
+    ("was", "now"),
+    [
+        ("Low 0.1", "Low 1 %"),
+        ("Low 1000", "Low 100"),
+        ("at least 5", "at least -5"),
+        ("at least 5", "above 5"),
+        ("5 (=Estimate!B2)", "5 (=Estimate!B3)"),
+        ("Low 01.03.2027", "Low 02.03.2027"),
+        ("1e-05", "1e-06"),
+    ],
+)
+def test_another_definition_is_seen(was, now):
+    assert not same_definition(was, now)

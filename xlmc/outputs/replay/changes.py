@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Hashable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import ROUND_DOWN, ROUND_HALF_EVEN, ROUND_HALF_UP, Context, Decimal
@@ -26,6 +27,7 @@ __all__ = [
     "is_number",
     "is_rewritten_number",
     "number_changes",
+    "same_definition",
     "structure_changes",
 ]
 
@@ -58,6 +60,12 @@ _STATISTICS: Final = ("mean", "standard_deviation", "low", "high")
 
 _LATER: Final = ("checks", "forecast_filters", "decisions", "solves")
 """Sections that records have where the workbook has such rows, and that older ones do not have at all."""
+
+_NUMBER: Final = re.compile(
+    r"(?<![\w.!:])(?P<sign>-?)[$€£]?\s?(?P<digits>\d{1,3}(?:,\d{3})+(?:\.\d+)?|\d+(?:\.\d+)?)"
+    r"(?P<percent>\s?%)?(?:\s?[$€£])?(?![\w.!:])"
+)
+"""A number of a text as people read it; no part of an address, of a date or of a power of ten."""
 
 K = TypeVar("K", bound=Hashable)
 
@@ -191,8 +199,23 @@ def definition_changes(recorded: Record, found: Record) -> list[Change]:
                 continue
             for key in keys:
                 label = f"{name}, {key.replace('_', ' ')}"
-                changes += _differing(kind, {label: _text(old[name].get(key))}, {label: _text(new[name].get(key))})
+                was, now = _text(old[name].get(key)), _text(new[name].get(key))
+                if not same_definition(was, now):
+                    changes += _differing(kind, {label: was}, {label: now})
     return changes
+
+
+def same_definition(was: str, now: str) -> bool:
+    """Tell whether two texts of a definition differ at most in how their numbers are written.
+
+    Versions before 0.12.0 wrote `Low 0.1` where a cell shows `10 %`, and left out thousands separators and currencies.
+    """
+    return _NUMBER.sub(_without_form, was) == _NUMBER.sub(_without_form, now)
+
+
+def _without_form(found: re.Match[str]) -> str:
+    number = Decimal(found["digits"].replace(",", ""))
+    return f"{found['sign']}{(number / 100 if found['percent'] else number).normalize():f}"
 
 
 def environment_changes(recorded: Record, found: Record) -> list[Change]:

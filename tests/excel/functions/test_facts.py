@@ -44,6 +44,8 @@ _QUOTED = re.compile(r"(?=[\"']([^\"' \n]+)([\"' ]))")
 """A text, or the first word of one, and what ends it."""
 
 LISTS = {
+    ("engine/llvm/root_loop.py", "_EXACT"): "any other function's bits in native code are not NumPy's",
+    ("montecarlo/model/forecast_values.py", "_KEEP_ONE_AND_ZERO"): "any other function may give more than 0 and 1",
     (
         "montecarlo/definitions/in_cells/random_functions.py",
         "INVERSES",

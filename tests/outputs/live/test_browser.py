@@ -310,7 +310,7 @@ def test_by_keys_alone(chromium, running, tmp_path):
     focus_on("each.role === 'tab'")
     press(Keys.ARROW_RIGHT)
     assert page.one("#tab-matters").get_attribute("aria-selected") == "true"
-    for _ in range(3):
+    for _ in range(4):
         press(Keys.ARROW_RIGHT)
     assert page.one("#panel-scenarios").is_displayed()
     focus_on("each.id === 'scenario-name'")

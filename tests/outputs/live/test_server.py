@@ -452,7 +452,7 @@ def test_a_connection_whose_head_came_in_time_lives_on(open_book, monkeypatch):
     with open_book.window(open_book.library.only) as window:
         window.next("rest")
         time.sleep(0.5)
-        window.say("view", forecasts=[], chosen=[], tab="tables", first="", second="", fits=False)
+        window.say("view", forecasts=[], chosen=[], tab="tables", first="", second="", fits=False, trial=0)
         assert window.next("part")["tab"] == "tables"
 
 

@@ -47,16 +47,21 @@ class Step:
     Attributes:
         formulas: the cells of the formulas that are shown, in the order in which they are computed.
         left: how many more there are.
+        filters: what accepts trials, but for evidence that keeps them by chance: no run holds its random numbers.
+        by_chance: that evidence.
     """
 
     def __init__(self, model: CompiledModel) -> None:
         needed = model.needed.graph.formulas
         self.formulas: tuple[Cell, ...] = tuple(islice(needed, MOST_FORMULAS))
         self.left = len(needed) - len(self.formulas)
-        self._filters: tuple[Filter, ...] = (*model.filters, *model.forecast_filters)
-        answers = (*(each.cell for each in self._filters), *(each.cell for each in model.forecasts))
+        every: tuple[Filter, ...] = (*model.filters, *model.forecast_filters)
+        conditions = (*model.filter_targets, *conditions_of(model.forecast_filters))
+        self.by_chance = [each for each in every if each.evidence is not None and each.evidence.by_chance]
+        self.filters = [each for each in every if each not in self.by_chance]
+        answers = (*(each.cell for each in every), *(each.cell for each in model.forecasts))
         self._cells = tuple(dict.fromkeys((*self.formulas, *answers)))
-        targets = [*model.filter_targets, *conditions_of(model.forecast_filters)]
+        targets = [each for of, each in zip(every, conditions, strict=True) if of in self.filters]
         targets += [Target(cell, cell) for cell in self._cells]
         kinds = [model.lowering.dag.types[model.lowering.target(each)] for each in targets]
         self._logical = [kind is Kind.LOGICAL for kind in kinds]
@@ -79,7 +84,7 @@ class Step:
             _value(column, trial - start, logical=logical)
             for column, logical in zip(columns, self._logical, strict=True)
         ]
-        count = len(self._filters)
+        count = len(self.filters)
         holds = [None if isinstance(each, str) else bool(each) for each in values[:count]]
         return holds, dict(zip(self._cells, values[count:], strict=True))
 
@@ -127,16 +132,15 @@ def step_html(run: RunResult, trial: int) -> str:
     holds, values = step.at(draws, trial)
     text = {cell: _text(value) for cell, value in values.items()}
     drawn = [(each.name, str(each.cell), _text(float(draws[each.name][trial])), each.units) for each in model.live]
-    filters = (*model.filters, *model.forecast_filters)
-    asked = [
-        (each.name, str(each.cell), limits_text(each), text[each.cell], {True: "yes", False: "no", None: "error"}[held])
-        for each, held in zip(filters, holds, strict=True)
-    ]
+    said_of = {True: "yes", False: "no", None: "error"}
+    words = [(each, said_of[held]) for each, held in zip(step.filters, holds, strict=True)]
+    words += [(each, "by chance") for each in step.by_chance]
+    asked = [(each.name, str(each.cell), limits_text(each), text[each.cell], word) for each, word in words]
     answers = [(each.name, str(each.cell), text[each.cell], each.units) for each in model.forecasts]
     formulas = [(str(cell), model.needed.graph.text(cell), text[cell]) for cell in step.formulas]
     said = f"{count_text(step.left)} more formulas are not shown." if step.left else ""
     blocks: list[Block] = [
-        Paragraph(_verdict(run, trial, filters[: len(model.filters)], holds)),
+        Paragraph(_verdict(run, trial, step, holds)),
         Table("", ("Drawn", "Cell", "Value", "Units"), tuple(drawn), right=(2,), caption="Assumptions"),
         *([_filters_table(asked)] if asked else []),
         Table("", ("Forecast", "Cell", "Value", "Units"), tuple(answers), right=(2,), caption="Forecasts"),
@@ -150,15 +154,18 @@ def _filters_table(rows: Sequence[tuple[str, ...]]) -> Table:
     return Table("", ("Filter", "Cell", "Holds if", "Value", "Holds"), tuple(rows), right=(3,), caption="Filters")
 
 
-def _verdict(run: RunResult, trial: int, filters: Sequence[Filter], holds: Sequence[bool | None]) -> str:
-    """Say whether the filters accept a trial, and which do not."""
+def _verdict(run: RunResult, trial: int, step: Step, holds: Sequence[bool | None]) -> str:
+    """Say whether the filters of all forecasts accept a trial, and which do not."""
     which = f"Trial {count_text(trial + 1)}"
-    against = [each.name for each, held in zip(filters, holds, strict=False) if held is False]
-    wrong = [each.name for each, held in zip(filters, holds, strict=False) if held is None]
+    asked = [(each, held) for each, held in zip(step.filters, holds, strict=True) if each in run.model.filters]
+    against = [each.name for each, held in asked if held is False]
+    wrong = [each.name for each, held in asked if held is None]
     if against:
         return f"{which} is rejected by: {'; '.join(against)}."
     if wrong:
         return f"{which} is lost: there is an error in {'; '.join(wrong)}."
+    if step.by_chance:
+        return f"{which} meets every limit; evidence keeps it by chance: {'; '.join(e.name for e in step.by_chance)}."
     weighted = "; evidence gives it a weight" if run.weighting is not None else ""
     return f"{which} is accepted{weighted}."
 

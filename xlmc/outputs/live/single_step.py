@@ -118,7 +118,7 @@ def step_of(run: RunResult, trial: int) -> dict[str, Any]:
 
 
 def drawn_in(run: RunResult) -> Mapping[str, NDArray[np.float64]]:
-    """Return assumption -> draws of the first trials, `(n,)`; of those accepted where a run drew near these alone."""
+    """Return assumption -> draws of the first trials, `(n,)`; of the accepted ones where a run keeps no others."""
     return run.prior if any(values.size for values in run.prior.values()) else run.inputs
 
 

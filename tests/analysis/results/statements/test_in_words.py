@@ -15,8 +15,9 @@ from xlmc.analysis.results.statements.in_words import (
     status,
 )
 from xlmc.excel.address import Area, Cell
-from xlmc.montecarlo.definitions.definitions import Assumption, DataRange, Definitions, Filter
+from xlmc.montecarlo.definitions.definitions import Assumption, DataRange, Definitions, Filter, StatedNumber
 from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Correlated,
@@ -29,6 +30,7 @@ from xlmc.montecarlo.definitions.scenarios import (
     Switched,
     Typed,
 )
+from xlmc.montecarlo.definitions.stating import Kind
 
 HERE = Cell("Inputs", 7, 2)
 
@@ -82,13 +84,20 @@ def test_data(options, text):
     assert distribution_text(Assumption("a", HERE, "Custom", {}, HERE, data=data)) == text
 
 
-def test_a_frozen_row_without_a_distribution_is_held_at_its_value():
+@pytest.mark.parametrize(
+    ("form", "stated", "text"),
+    [
+        (PLAIN, {}, "held at 6,100"),
+        (PLAIN, {"low": StatedNumber(6100.0, "=Estimate!B2")}, "held at 6,100 (=Estimate!B2)"),
+        (Form(Kind.CURRENCY, '"$"#,##0'), {}, "held at $6,100"),
+    ],
+)
+def test_a_frozen_row_without_a_distribution_is_held_at_its_value(form, stated, text):
     parameters = {"low": 6100.0, "high": 6100.0}
-    assert (
-        distribution_text(Assumption("a", HERE, "Uniform", parameters, HERE, base=6100.0, frozen=True))
-        == "held at 6,100"
-    )
-    assert distribution_text(Assumption("a", HERE, "Uniform", parameters, HERE)) == "Uniform: Low 6,100, High 6,100"
+    held = Assumption("a", HERE, "Uniform", parameters, HERE, base=6100.0, frozen=True, stated=stated, form=form)
+    assert distribution_text(held) == text
+    drawn = Assumption("a", HERE, "Uniform", parameters, HERE)
+    assert distribution_text(drawn) == "Uniform: Low 6,100, High 6,100"
 
 
 def test_parameters_stand_in_the_familys_order():

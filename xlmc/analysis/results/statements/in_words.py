@@ -113,8 +113,8 @@ def cutoffs_text(assumption: Assumption) -> str:
 def distribution_text(assumption: Assumption) -> str:
     """Write a distribution: `Normal: Mean 0.77, Std dev 0.05; cut off below 0.6`; `held at 55` of a row without one."""
     given = assumption.given
-    if assumption.frozen and list(given) == ["low", "high"] and given["low"] == given["high"]:
-        return f"held at {assumption.stated.get('low') or given_text(given['low'])}"
+    if assumption.frozen and given.keys() == {"low", "high"} and given["low"] == given["high"]:
+        return f"held at {assumption.text_of('low')}"
     cutoffs = cutoffs_text(assumption)
     ending = f"; cut off {cutoffs}" if cutoffs else ""
     return f"{assumption.distribution}: {parameters_text(assumption)}{ending}"

@@ -33,6 +33,8 @@ ODD = (
     },
 )
 """Errors in quantities and in what they are compared with, texts, and a limit in a cell."""
+KEEPS_ALL = (*ODD[:2], {"ten": "B1", "both": "B2", "drawn": "A1"}, {})
+"""No filter: every trial is accepted, with errors in an answer, and a draw as an answer."""
 
 
 @pytest.fixture(scope="module")
@@ -47,6 +49,9 @@ def moves(model):
         for limit in (0.5, 0.4):
             yield [Range(FRICTION, 0.7, 0.8), Limits(TANGENT, {"at_most": limit})]
         yield [Range(FRICTION, 0.1, 2.5)]
+    elif not model.filters:
+        yield [Numbers("n", {"mean": 1.1})]
+        yield [Range("u", 0.1, 0.95)]
     else:
         yield [Numbers("n", {"mean": 1.1})]
         for limit in (20.0, 9.0):
@@ -72,10 +77,17 @@ def run(model, kept, block=BLOCK):
 
 @pytest.mark.parametrize(
     ("which", "engine"),
-    [("case study", "numpy"), ("errors", "numpy"), ("errors", "jit"), ("too large to keep", "jit")],
+    [
+        ("case study", "numpy"),
+        ("errors", "numpy"),
+        ("errors", "jit"),
+        ("too large to keep", "jit"),
+        ("nothing rejected", "numpy"),
+        ("nothing rejected", "jit"),
+    ],
 )
 def test_a_reusing_runner_gives_what_a_new_one_gives(book, case, engine, which, monkeypatch):
-    model = case if which == "case study" else book(*ODD)
+    model = case if which == "case study" else book(*(KEEPS_ALL if which == "nothing rejected" else ODD))
     if which == "too large to keep":
         monkeypatch.setattr(reusing_runner, "_MOST_BYTES", 100)
     kept = ReusingRunner(model, engine, 5, TRIALS)

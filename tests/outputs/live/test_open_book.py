@@ -7,6 +7,7 @@ import contextlib
 import json
 import os
 import shutil
+import time
 
 import pytest
 from fewer_sheets import SHORT, keep_sheets, leave_out_fits
@@ -15,6 +16,7 @@ from simulated import simulated
 
 from xlmc.analysis.results.saved import open_run
 from xlmc.montecarlo.model.loading import load
+from xlmc.outputs.live.adjustments import Adjustments
 from xlmc.outputs.live.open_book import Window
 
 
@@ -116,6 +118,31 @@ def test_what_is_changed_outlives_the_window(running, book):
         window.say("restore", take=True)
         assert window.next("rest", lambda message: message["version"] == 1)
         assert window.heard_last("state")["changes"] == state["offered"]
+
+
+def test_a_number_that_was_set_just_before_the_end_is_kept(running, book, monkeypatch):
+    monkeypatch.setattr("xlmc.outputs.live.open_book._KEPT_AFTER", 600.0)
+    server = running(book=book)
+    with server.window(server.library.only) as window:
+        name, number = first_number(window.next("state"))
+        window.say("set", **change(name, number["key"], number["value"] * 1.01).fields)
+        window.next("state", lambda message: message["changes"])
+        assert server.library.keeper.scenarios(book) == ({}, Adjustments())
+    server.server.end()
+    server.ended()
+    _, unkept = server.library.keeper.scenarios(book)
+    assert unkept == Adjustments().having("assumption", name, number["key"], number["value"] * 1.01)
+
+
+def test_numbers_are_kept_once_none_was_set_for_a_moment(running, book):
+    server = running(book=book)
+    with server.window(server.library.only) as window:
+        name, number = first_number(window.next("state"))
+        window.say("set", **change(name, number["key"], number["value"] * 1.01, held=True).fields)
+        end = time.monotonic() + 60
+        while not server.library.keeper.scenarios(book)[1]:
+            assert time.monotonic() < end
+            time.sleep(0.05)
 
 
 def test_results_are_written_beside_the_workbook_and_changes_into_it(running, book, monkeypatch):

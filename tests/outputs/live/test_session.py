@@ -605,6 +605,42 @@ KINDS_MOVED = {
 COLUMNS = {"low": "Low", "high": "High", "mean": "Mean", "std_dev": "Std dev", "location": "Location"}
 
 
+def test_rows_and_shapes_that_are_kept_are_those_that_are_made_anew(readings):
+    path, model = readings
+    session = Session(model)
+    settle(session)
+    moves = [
+        change("v", "mean", 31.0),
+        change("t", "high", 2.7),
+        change("v", "upper_cutoff", 37.0),
+        change("v", "frozen", True),
+        change("v", "base", 33.0),
+        change("v", "frozen", False),
+        change("t", "kind", "Normal"),
+        change("t", "mean", 2.1),
+        change("v", "mean", None),
+        PageMessage("undo", {}),
+        change("t", "band_low", 20.0),
+        PageMessage("reset", {"of": "assumption", "name": "t"}),
+    ]
+    for sent in moves:
+        (state,) = session.receive(sent).all
+        frame = next_frame(session)
+        fresh = Session(load(path))
+        fresh.adjustments = session.adjustments
+        first = next_frame(fresh)
+        assert state["assumptions"] == assumption_rows(fresh.own, session.adjustments), sent
+        assert frame["shapes"] == first["shapes"], sent
+
+
+def next_frame(session):
+    """The charts that are told next."""
+    while True:
+        for each in done(session, session.job()):
+            if each["kind"] == "frame":
+                return each
+
+
 @pytest.mark.parametrize(("name", "kind", "numbers"), KINDS_MOVED.values(), ids=KINDS_MOVED)
 def test_another_kind_of_distribution_gives_what_the_edited_workbook_gives(
     readings, tmp_path, monkeypatch, name, kind, numbers

@@ -217,6 +217,8 @@ class _MovedEvaluator:
 
     def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
         """See `Evaluator`."""
+        if all(column.values.size == survivors.size for column in self._answers):  # every trial survives
+            return list(self._answers)
         return [column.at(survivors) for column in self._answers]
 
     def _all(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:

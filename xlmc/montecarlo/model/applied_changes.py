@@ -51,7 +51,7 @@ from xlmc.montecarlo.definitions.scenarios import (
     Tabulated,
     Typed,
 )
-from xlmc.montecarlo.definitions.tables.changed_cells import cells_that_change, use_cell
+from xlmc.montecarlo.definitions.tables.changed_cells import cells_that_change, tables_of, use_cell
 from xlmc.montecarlo.definitions.tables.evidence_rows import as_filter, check_sizes
 from xlmc.montecarlo.definitions.tables.filters import LIMITS, contradiction
 from xlmc.montecarlo.distributions.parameters import show
@@ -181,15 +181,16 @@ def changed_cells(model: CompiledModel, definitions: Definitions) -> tuple[dict[
     """
     cells: dict[Cell, CellValue] = {}
     lacking: dict[str, list[str]] = {}
+    tables = tables_of(model.workbook)
     for old, new in zip(_rows(model.definitions), _rows(definitions), strict=True):
         if old is not new:
-            found, missing = cells_that_change(model.workbook, old, new)
+            found, missing = cells_that_change(model.workbook, old, new, tables)
             cells |= found
             if missing:
                 lacking[old.name] = missing
     for was, is_now in zip(model.definitions.correlations, definitions.correlations, strict=True):
         if was is not is_now:
-            found, missing = cells_that_change(model.workbook, was, is_now)
+            found, missing = cells_that_change(model.workbook, was, is_now, tables)
             cells |= found
             if missing:
                 lacking[f"{was.first} and {was.second}"] = missing

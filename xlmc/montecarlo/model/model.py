@@ -256,9 +256,9 @@ class CompiledModel:
         """Whether anything but the rows of tables may read one of these cells, which are of such rows."""
         if not cells:
             return False
-        own = {a.cell for a in self.assumptions}
+        own, read = {a.cell for a in self.assumptions}, self.read
         calls = bool(self.definitions.rewritten)  # whose arguments may be cells that were read as numbers
-        return calls or self._folded or not (self.read - own).isdisjoint(cells)
+        return calls or self._folded or any(cell in read and cell not in own for cell in cells)
 
     @property
     def saved(self) -> frozenset[Cell]:

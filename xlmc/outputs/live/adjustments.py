@@ -62,6 +62,7 @@ __all__ = [
     "SWITCHES",
     "Adjustments",
     "Amount",
+    "adjusted_assumption",
     "adjusted_definitions",
     "adjustments_of",
     "assumption_numbers",
@@ -338,7 +339,8 @@ def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Chang
     """Return what is to be changed in the workbook, without what has no effect, as a number of what is frozen."""
     found: list[Change] = []
     for assumption in definitions.assumptions:
-        found += _of_assumption(assumption, dict(adjustments.assumptions.get(assumption.name, {})))
+        if moved := adjustments.assumptions.get(assumption.name):
+            found += _of_assumption(assumption, dict(moved))
     for name, given in adjustments.filters.items():
         own = definitions.is_used(name)
         used = bool(given.get("used", own))
@@ -543,7 +545,7 @@ def adjusted_definitions(definitions: Definitions, adjustments: Adjustments) -> 
     """Return the definitions with these values, whatever they are."""
     return replace(
         definitions,
-        assumptions=tuple(_assumption(each, adjustments.assumptions) for each in definitions.assumptions),
+        assumptions=tuple(adjusted_assumption(each, adjustments) for each in definitions.assumptions),
         filters=tuple(_filter(each, adjustments.filters) for each in definitions.filters),
         forecast_filters=tuple(_filter(each, adjustments.filters) for each in definitions.forecast_filters),
         unused=tuple(_filter(each, adjustments.filters) for each in definitions.unused),
@@ -554,8 +556,9 @@ def adjusted_definitions(definitions: Definitions, adjustments: Adjustments) -> 
     )
 
 
-def _assumption(assumption: Assumption, changed: Changed) -> Assumption:
-    given = dict(changed.get(assumption.name, {}))
+def adjusted_assumption(assumption: Assumption, adjustments: Adjustments) -> Assumption:
+    """Return an assumption with its numbers as they are now, whatever they are."""
+    given = dict(adjustments.assumptions.get(assumption.name, {}))
     if not given:
         return assumption
     frozen_part: dict[str, Any] = {key: given.pop(key) for key in ("base", "frozen") if key in given}
@@ -583,6 +586,8 @@ def _evidence(evidence: Evidence, changed: Changed) -> Evidence:
 
 def _forecast(forecast: Forecast, changed: Changed) -> Forecast:
     given = _numbers(changed.get(forecast.name, {}))
+    if not given:
+        return forecast
     central = given.get("central")
     share = forecast.central if central is None else central / 100.0
     return replace(forecast, threshold=given.get("threshold", forecast.threshold), central=share)

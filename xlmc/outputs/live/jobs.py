@@ -21,7 +21,7 @@ from xlmc.outputs.live.frames import Bases, bases_of, frame_of, matrix_of, matte
 from xlmc.outputs.live.moving_models import KnownModels
 from xlmc.outputs.live.protocol import Message, PageMessage
 from xlmc.outputs.live.single_step import step_of
-from xlmc.outputs.live.window_book import shapes_of
+from xlmc.outputs.live.window_book import Shapes, shapes_of
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.stopping import Progress
@@ -170,6 +170,7 @@ class StateRun:
         seq: of the message that made it.
         adjustments: the state.
         models: what gives its model.
+        shapes: of the distributions that were shown last.
         view: what can be seen.
         behind: the state to be drawn behind it; None where there is none.
         method: how evidence is used while states move.
@@ -186,6 +187,7 @@ class StateRun:
     seq: int
     adjustments: Adjustments
     models: KnownModels
+    shapes: Shapes
     view: View
     behind: RunResult | None
     method: str | None
@@ -251,7 +253,7 @@ class StateRun:
         resting, view = self.stage == "rest", self.view
         frame = frame_of(found, self.behind, view.forecasts, base, moving=not resting, fits=resting and view.fits)
         messages = [_frame("rest" if resting else "moving", self.version, self.seq, frame)]
-        messages[0]["shapes"] = shapes_of(model, self._reshaped(model))
+        messages[0]["shapes"] = shapes_of(model, self._reshaped(model), self.shapes)
         if resting:
             return [*messages, {"kind": "rest", "version": self.version, **rest_of(found)}]
         pairs = (replace(tab, chosen=()) for tab in view.tabs if tab.key == "pairs")  # whose matrix takes its time

@@ -34,6 +34,9 @@ __all__ = ["OpenBook", "Window"]
 _PAUSE: Final = 0.15
 """Seconds that a held handle must be still before the longer runs begin."""
 
+_KEPT_AFTER: Final = 0.3
+"""Seconds after a number was set until the state is written to a file: the answer comes first."""
+
 _TOLD_EVERY: Final = 0.1
 """Seconds between two messages on how far a run is."""
 
@@ -111,6 +114,7 @@ class OpenBook:
         self._trouble: dict[str, str] = {}
         self._tasks: list[asyncio.Task[None]] = []
         self._stamp: tuple[int, ...] | None = None
+        self._keeping: asyncio.TimerHandle | None = None
 
     def start(self) -> None:
         """Begin to read, to compute and to watch; in a running event loop."""
@@ -129,6 +133,8 @@ class OpenBook:
         """End all of it."""
         for task in self._tasks:
             task.cancel()
+        if self._keeping is not None:
+            self._keep()
         if self.session is not None:
             self.session.end()  # a run that is going on is not wanted any more
         await asyncio.gather(*self._tasks, return_exceptions=True)
@@ -197,7 +203,9 @@ class OpenBook:
         for message in replies.own:
             window.put(message)
         self._send(replies.all)
-        if sent.kind in _CHANGING and not (sent.kind == "set" and sent["held"]):
+        if sent.kind in ("set", "numbers"):
+            self._keep_soon()
+        elif sent.kind in _CHANGING:
             self._keep()
         self._wake.set()
 
@@ -235,7 +243,17 @@ class OpenBook:
             return
         self._send([{"kind": "trouble", "about": about, "text": text}])
 
+    def _keep_soon(self) -> None:
+        """Keep the state once no number has been set for a moment."""
+        if self._keeping is not None:
+            self._keeping.cancel()
+        self._keeping = asyncio.get_running_loop().call_later(_KEPT_AFTER, self._keep)
+
     def _keep(self) -> None:
+        """Keep the scenarios and the state for when the workbook is opened again."""
+        if self._keeping is not None:
+            self._keeping.cancel()
+            self._keeping = None
         if self.session is None:
             return
         try:

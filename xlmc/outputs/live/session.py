@@ -56,6 +56,7 @@ from xlmc.outputs.live.moving_models import KnownModels
 from xlmc.outputs.live.pace import Pace
 from xlmc.outputs.live.protocol import Message, PageMessage
 from xlmc.outputs.live.window_book import (
+    Shapes,
     assumption_rows,
     book_message,
     correlation_rows,
@@ -144,6 +145,7 @@ class Session:
         self._seq = 0
         self._done: dict[str | Tab, object] = {}
         self._models = self._new_models()
+        self._shapes: Shapes = {}
         self._problem: str | None = None
         self._last: dict[str, Message] = {}
         self._pace = Pace(len(model.needed.graph.formulas))
@@ -532,6 +534,7 @@ class Session:
             seq=self._seq,
             adjustments=self.adjustments,
             models=self._models,
+            shapes=self._shapes,
             view=self.view,
             behind=self._compared,
             method="rejection" if self.rest is None else self.rest.settings.evidence,
@@ -544,10 +547,13 @@ class Session:
         ).run
 
     def _draws_shown(self, stage: Stage) -> int:
-        """Return of how many trials draws are shown: many in *What matters* if there is time, few in a scatter."""
+        """Return of how many trials draws are shown: many in *What matters* if there is time, few in a scatter of an
+        assumption.
+        """
         if _sketched(self.view) is not None and stage == "moving" and self._sketch_seconds < _SKETCH:
             return _SKETCHED_DRAWS // max(len(self.own.draws), 1)
-        return _SCATTERED if any(tab.key == "pairs" for tab in self.view.tabs) else 0
+        pairs = {name for tab in self.view.tabs if tab.key == "pairs" for name in (tab.first, tab.second)}
+        return 0 if pairs.isdisjoint(self.own.draws) else _SCATTERED
 
     @_IN_OWN_STYLE
     def finish(self, job: Job, outcome: Outcome) -> list[Message]:

@@ -25,6 +25,7 @@ from xlmc.montecarlo.definitions.tables.evidence_rows import check_sizes
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.sampling.draws import Draw
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics.estimate import finite, t_quantile
 from xlmc.outputs.live.adjustments import (
@@ -35,6 +36,7 @@ from xlmc.outputs.live.adjustments import (
     REMOVABLE,
     SOLVED,
     Adjustments,
+    adjusted_assumption,
     adjusted_definitions,
     adjustments_of,
     assumption_numbers,
@@ -49,6 +51,7 @@ from xlmc.outputs.live.protocol import Message
 from xlmc.outputs.page.payload import CONFIDENCE, signs_json
 
 __all__ = [
+    "Shapes",
     "assumption_rows",
     "book_message",
     "correlation_rows",
@@ -68,8 +71,13 @@ _ON_AXIS: Final = frozenset(
 )
 """Parameters that are values of the quantity itself, and can be dragged along its axis; percentiles are, too."""
 
-_OWN_ROWS: Final[WeakKeyDictionary[CompiledModel, dict[str, dict[str, Any]]]] = WeakKeyDictionary()
-"""The rows of assumptions that are as in the workbook: every state has many of them."""
+_ROWS: Final[WeakKeyDictionary[CompiledModel, dict[str, tuple[Mapping[str, Any], dict[str, Any]]]]] = (
+    WeakKeyDictionary()
+)
+"""What was changed of each assumption of a workbook when its row was made last, and the row: few move at a time."""
+
+Shapes = dict[str, tuple[Draw, dict[str, Any] | None]]
+"""Name of an assumption -> how it is drawn, and the shape of that; None for what is no numbers."""
 
 _MOST_TICKS: Final = 60
 """Values of a decision that are marked on its axis."""
@@ -93,18 +101,12 @@ def assumption_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[s
         own: the model of the workbook.
         adjustments: what was changed.
     """
-    now = adjusted_definitions(own.definitions, adjustments)
-    changed = adjustments.assumptions
-    known = _OWN_ROWS.setdefault(own, {})
-    rows = []
-    for each, before in zip(now.assumptions, own.assumptions, strict=True):
-        if each is not before:
-            rows.append(_assumption(own, each, before, changed.get(each.name, {})))
-        elif each.name in known:
-            rows.append(known[each.name])
-        else:
-            rows.append(known.setdefault(each.name, _assumption(own, each, before, {})))
-    return rows
+    known = _ROWS.setdefault(own, {})
+    for each in own.assumptions:
+        given = adjustments.assumptions.get(each.name, {})
+        if each.name not in known or known[each.name][0] != given:
+            known[each.name] = given, _assumption(own, adjusted_assumption(each, adjustments), each, given)
+    return [known[each.name][1] for each in own.assumptions]
 
 
 def _assumption(
@@ -173,18 +175,22 @@ def _step(span: float, size: float) -> float:
     return float(f"1e{math.floor(math.log10(wanted) + 1e-9)}") if wanted > 0.0 else 0.01
 
 
-def shapes_of(model: CompiledModel, names: Sequence[str] | None = None) -> dict[str, dict[str, Any]]:
+def shapes_of(
+    model: CompiledModel, names: Sequence[str] | None = None, known: Shapes | None = None
+) -> dict[str, dict[str, Any]]:
     """Return the drawn distributions, small: name -> `low`, `high` and the heights of bars of equal width, up to 1.
 
     Args:
         model: whose.
         names: of those wanted; by default of all that are drawn.
+        known: those that were made last, from who asks again and again; it takes the new ones.
     """
-    return {
-        name: found
-        for name, values in model.quantiles(_PROBABILITIES, names).items()
-        if (names is None or name in names) and (found := _shape(values)) is not None
-    }
+    known = {} if known is None else known
+    wanted = [name for name in (model.bases if names is None else names) if name in model.bases]
+    new = [n for n in wanted if n not in known or known[n][0] != model.draws[n] or not known[n][0].fixed]
+    quantiles = model.quantiles(_PROBABILITIES, new) if new else {}
+    known |= {name: (model.draws[name], _shape(quantiles[name])) for name in new}
+    return {name: shape for name in wanted if (shape := known[name][1]) is not None}
 
 
 def _shape(values: NDArray[np.float64]) -> dict[str, Any] | None:
@@ -206,7 +212,8 @@ def filter_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, 
     """Return every filter and row of evidence with its numbers as they are now, also what is not used; see
     `assumption_rows`.
     """
-    definitions, now = own.definitions, adjusted_definitions(own.definitions, adjustments)
+    definitions = own.definitions
+    now = adjusted_definitions(definitions, Adjustments(filters=adjustments.filters))
     idle = {each.name for each in own.evidence if not each.used and each.can_be_used}
     pairs = zip(_filters(now, idle), _filters(definitions, idle), strict=True)
     changed = {name for name, each in adjustments.filters.items() if each}
@@ -333,7 +340,7 @@ def correlation_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[
 
 def decision_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, Any]]:
     """Return every decision with the number in its cell as it is now, and the values that studies try."""
-    now = adjusted_definitions(own.definitions, adjustments)
+    now = adjusted_definitions(own.definitions, Adjustments(decisions=adjustments.decisions))
     rows = []
     for each, before in zip(now.decisions, own.definitions.decisions, strict=True):
         ends = [min(each.values), max(each.values)]
@@ -358,7 +365,7 @@ def decision_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str
 
 def solve_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str, Any]]:
     """Return every cell that is solved for, and what for; the numbers that are typed in its row can be changed."""
-    now = adjusted_definitions(own.definitions, adjustments)
+    now = adjusted_definitions(own.definitions, Adjustments(solves=adjustments.solves))
     rows = []
     for each, before in zip(now.solves, own.definitions.solves, strict=True):
         numbers = [

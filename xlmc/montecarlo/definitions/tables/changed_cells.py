@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.workbook.workbook import CellValue, Workbook
@@ -10,25 +10,33 @@ from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Correla
 from xlmc.montecarlo.definitions.evidence import SIZES
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.filters import LIMITS
-from xlmc.montecarlo.definitions.tables.reserved_tables import definition_tables
+from xlmc.montecarlo.definitions.tables.reserved_tables import DefinitionTable, definition_tables
 from xlmc.montecarlo.definitions.tables.table_rows import Row, as_text
 from xlmc.montecarlo.distributions.spelling import name_key
 
-__all__ = ["NO_TABLE", "cells_that_change", "use_cell"]
+__all__ = ["NO_TABLE", "cells_that_change", "tables_of", "use_cell"]
 
 NO_TABLE = "of a table"
 
 _Row = Assumption | Filter | Forecast | Correlation
 
 
-def cells_that_change(workbook: Workbook, old: _Row, new: _Row) -> tuple[dict[Cell, CellValue], list[str]]:
+def cells_that_change(
+    workbook: Workbook, old: _Row, new: _Row, tables: Collection[DefinitionTable] | None = None
+) -> tuple[dict[Cell, CellValue], list[str]]:
     """Return the cells to be typed into, so that a row says what `new` says in place of `old`.
+
+    Args:
+        workbook: that they are in.
+        old: what the row says.
+        new: what it is to say.
+        tables: those of the workbook, from who asks for many rows.
 
     Returns:
         Cell -> what it would hold, None for nothing; and the headings of the columns that the table lacks. What is in
         no table, as a draw in a cell, has no cells: that is `NO_TABLE`.
     """
-    row = _row_of(workbook, old.row)
+    row = _row_of(workbook, old.row, tables)
     if isinstance(old, Correlation) or isinstance(new, Correlation):
         assert isinstance(new, Correlation)
         return _coefficients(workbook, row, new)
@@ -71,8 +79,13 @@ def use_cell(workbook: Workbook, first: Cell) -> Cell | None:
     return row.cell("Use") if row is not None and row.has("Use") else None
 
 
-def _row_of(workbook: Workbook, first: Cell) -> Row | None:
-    tables = (each for kind in definition_tables(workbook, Findings()).values() for each in kind)
+def tables_of(workbook: Workbook) -> tuple[DefinitionTable, ...]:
+    """Return the tables of a workbook whose rows may change."""
+    return tuple(each for kind in definition_tables(workbook, Findings()).values() for each in kind)
+
+
+def _row_of(workbook: Workbook, first: Cell, tables: Collection[DefinitionTable] | None = None) -> Row | None:
+    tables = tables_of(workbook) if tables is None else tables
     table = next((each for each in tables if first in each.table.area), None)
     return None if table is None else Row(workbook, table, first.row)
 

@@ -61,7 +61,7 @@ def test_the_equations_as_printed(xlmc, as_printed):
         outcome.out.index("2. Doubtful: Model!C11 V2i"),
     )
     assert first < second
-    assert "Instead: =180-MOD(180-(180+DEGREES(ATAN2(dV2x,dV2y))-alpha_2),360)" in outcome.out
+    assert "\nInstead:\n=180-MOD(180-(180+DEGREES(ATAN2(dV2x,dV2y))-alpha_2),360)" in outcome.out
     assert "Where: Nissan approach angle from 272 to" in outcome.out
     page = (ROOT / "docs" / "stability.md").read_text(encoding="utf-8")
     shown = page.partition("<!-- output of `xlmc stability as-printed.xlsx` -->\n```text\n")[2].partition("\n```")[0]

@@ -19,7 +19,7 @@ from xlmc.cli.options import (
     tolerance_option,
     trials_option,
 )
-from xlmc.cli.study_output import STUDY, end_early, give_out, study_options
+from xlmc.cli.study_output import STUDY, StudyOutput, end_early, study_options
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison import ForecastComparison
@@ -62,10 +62,7 @@ def compare(
     engine: str | None,
     jobs: int,
     no_causes: bool,
-    output: tuple[Path, ...],
-    also: tuple[Path, ...],
-    overwrite: bool,
-    as_json: bool,
+    output: StudyOutput,
     quiet: bool,
     functions: OwnFunctions | None,
 ) -> None:
@@ -77,12 +74,10 @@ def compare(
     from xlmc.montecarlo.diagnostics.directions import direction_notices
     from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.studies.compare import compare_report
-    from xlmc.outputs.study_report import Files
 
     books = load(first, functions=functions), load(second, functions=functions)
     use_number_style(books[0].definitions.settings.number_style)
-    files = Files((*output, *also), [first, second], overwrite=overwrite, functions=functions)
-    files.check()
+    files = output.files(first, second, functions=functions)
     with step_line(quiet) as tell:
         found = comparison.compare(
             *books,
@@ -98,7 +93,7 @@ def compare(
             tell=tell,
         )
     report = compare_report(found)
-    written = give_out(report, files.writers(report), as_json, [report.below, *report.blocks])
+    written = output.give(report, files)
     runs = list(zip(book_names(found), (found.first, found.second), strict=True))
     notices([replace(notice, where=name) for name, run in runs for notice in direction_notices(run.results.values())])
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]

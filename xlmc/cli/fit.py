@@ -14,7 +14,7 @@ import click
 
 from xlmc.cli.blocks import show
 from xlmc.cli.options import FilePath, OneOf
-from xlmc.cli.study_output import STUDY, study_options
+from xlmc.cli.study_output import STUDY, StudyOutput, study_options
 from xlmc.cli.terminal import say, say_json
 from xlmc.cli.writing import NOT_WRITTEN, write_files, written_or_reported
 
@@ -84,10 +84,7 @@ def fit(
     tests: str | None,
     columns: bool,
     uncertain: bool,
-    output: tuple[Path, ...],
-    also: tuple[Path, ...],
-    overwrite: bool,
-    as_json: bool,
+    output: StudyOutput,
 ) -> None:
     """Rank the distributions that describe the values in BOOK!RANGE, or in BOOK RANGE; or those of several columns.
 
@@ -101,10 +98,9 @@ def fit(
     from xlmc.cli import fit_into
     from xlmc.excel.workbook.printable import label
     from xlmc.outputs.document.parts import blocks_of
-    from xlmc.outputs.study_report import Files
 
     if tests is not None:
-        _copy_tests(source, cells, int(tests), into, as_json=as_json)
+        _copy_tests(source, cells, int(tests), into, as_json=output.as_json)
         return
     if columns or Path(source).suffix.casefold() in several.CSV:
         if name or distribution:
@@ -115,9 +111,9 @@ def fit(
         else:
             path, reference = _book_and_range(source, cells)
             read, where = several.columns_of_range(path, reference)
-        files = Files((*output, *also), [path] if into is None else [path, into], overwrite=overwrite)
-        files.check()
-        several.fit_columns(read, where, files, kind=kind, by=by, uncertain=uncertain, into=into, as_json=as_json)
+        sources = [path] if into is None else [path, into]
+        files = output.files(*sources)
+        several.fit_columns(read, where, output, files, kind=kind, by=by, uncertain=uncertain, into=into)
         return
     if uncertain:
         raise click.UsageError("--uncertain is for several columns: give --columns, or a .csv file.")
@@ -126,8 +122,7 @@ def fit(
     if into is not None and not name:
         raise click.UsageError("--into needs --name, the name of the assumption.")
     sources = [book] if into is None else [book, into]
-    files = Files((*output, *also), sources, overwrite=overwrite)
-    files.check()
+    files = output.files(*sources)
     values, where, blank, pooled = _values(book, reference)
     found = fitting.fit(values, kind=kind, by=by)
     found = replace(found, cautions=(*pooled, *found.cautions))
@@ -139,7 +134,7 @@ def fit(
     report = _report(found, values, f"{book.name} {where}", blank, row, as_json_of)
     written = write_files(files.writers(report))
     into = None if edited is None else written_or_reported(edited.path, partial(fit_into.write, edited))
-    if as_json:
+    if output.as_json:
         say_json(report.json())
     else:
         said = blocks_of(_cautions(found))  # as warnings, below

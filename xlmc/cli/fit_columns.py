@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.study_output import give_out
+from xlmc.cli.study_output import StudyOutput
 from xlmc.cli.terminal import say
 
 if TYPE_CHECKING:
@@ -29,25 +29,25 @@ _BLANK = ("", "na", "n/a", "nan", "null", "-")
 def fit_columns(
     columns: Mapping[str, Sequence[float | str | None]],
     source: str,
+    output: StudyOutput,
     files: Files,
     *,
     kind: str | None,
     by: str,
     uncertain: bool,
     into: Path | None,
-    as_json: bool,
 ) -> None:
     """Fit the columns, give out what was found, and write it into a workbook.
 
     Args:
         columns: heading -> its cells.
         source: where they stand.
+        output: as it was typed.
         files: to write the report to.
         kind: of all numbers.
         by: what ranks the families.
         uncertain: whether parameters become assumptions of their own, by a bootstrap.
         into: the workbook that gets the sheet; it is made where there is none.
-        as_json: print the result as JSON.
 
     Raises:
         Exit: some column has too few values to tell families apart.
@@ -60,10 +60,10 @@ def fit_columns(
     found = study(columns, kind=kind, by=by, bootstraps=BOOTSTRAPS if uncertain else 0)
     report = _report(found, source)
     data = None if into is None else _data(book, found, source)
-    written = give_out(report, files.writers(report), as_json, [f"{report.below}.", *report.blocks])
+    written = output.give(report, files)
     if into is not None and data is not None:
         _write(into, data, "" if book is None else book.sha256)
-        if not as_json:
+        if not output.as_json:
             rows = sum(each.best is not None for each in found.columns)
             say(f"Written: {rows} distributions and {len(found.pairs)} rank correlations on a sheet of {into}")
     for caution in _cautions(found):

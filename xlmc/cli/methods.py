@@ -7,11 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from xlmc.cli.blocks import show
 from xlmc.cli.options import FilePath, WholeNumber, functions_option, quiet_option, seed_option
-from xlmc.cli.study_output import NOT_TO_BE_USED, end_early, study_options
-from xlmc.cli.terminal import paragraph, say, say_json
-from xlmc.cli.writing import write_files
+from xlmc.cli.study_output import NOT_TO_BE_USED, StudyOutput, end_early, study_options
 
 if TYPE_CHECKING:
     from xlmc.excel.own_functions import OwnFunctions
@@ -55,25 +52,16 @@ def methods(
     replicates: int | None,
     quick: bool,
     seed: int | None,
-    output: tuple[Path, ...],
-    also: tuple[Path, ...],
-    overwrite: bool,
-    as_json: bool,
+    output: StudyOutput,
     quiet: bool,
     functions: OwnFunctions | None,
 ) -> None:
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
     from xlmc.analysis.studies.methods import quick_settings, recommendation, study
-    from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import step_line
-    from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.methods import in_short, methods_report
-    from xlmc.outputs.study_report import Files
 
-    model = load(book, functions=functions)
-    use_number_style(model.definitions.settings.number_style)
-    files = Files((*output, *also), [book], overwrite=overwrite, functions=functions, drawn=True)
-    files.check()
+    model, files = output.open(book, functions, drawn=True)
     asked: dict[str, Any] = {"reference_trials": reference_trials, "trials": trials, "replicates": replicates}
     given = {name: value for name, value in asked.items() if value is not None}
     if quick:
@@ -81,15 +69,8 @@ def methods(
     with step_line(quiet) as tell:
         found = study(model, accuracy=accuracy, seed=seed, tell=tell, **given)
     report = methods_report(found, figures=files.show_figures)
-    written = write_files(files.writers(report))
-    if as_json:
-        say_json(report.json())
-    else:
-        show(in_short(found))
-        say()
-        for advice in recommendation(found):
-            say(f"{paragraph(advice)}\n")
-        written.print_paths()
+    advice = (line for each in recommendation(found) for line in (each, ""))
+    written = output.give(report, files, [*in_short(found), "", *advice])
     written.check()
     end_early(found.ended)
     if found.reference.warnings:

@@ -5,20 +5,14 @@ from __future__ import annotations
 import math
 import shlex
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from xlmc.cli.options import (
     FilePath,
-    engine_option,
-    functions_option,
-    jobs_option,
-    quiet_option,
-    seed_option,
-    trials_option,
 )
-from xlmc.cli.study_output import STUDY, conclude, give_out, study_options
+from xlmc.cli.study_output import STUDY, StudyOutput, conclude, study_run_options
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.optimising import Optimised
@@ -60,13 +54,7 @@ _KINDS = f"{STUDY}, the accepted trials of the best decisions' run (.csv, .parqu
     help="Percent of its trials that a candidate may lose to errors in cells; one that loses more cannot be the best.",
 )
 @click.option("--runs", type=float, default=60.0, show_default=True, help="Runs whose trials the search may take.")
-@trials_option("a run")
-@seed_option("the run")
-@engine_option
-@jobs_option
-@study_options(_KINDS)
-@quiet_option
-@functions_option
+@study_run_options("each run", _KINDS)
 def optimise(
     book: Path,
     maximise: str | None,
@@ -76,32 +64,20 @@ def optimise(
     indifference: float | None,
     allow_lost: float,
     runs: float,
-    trials: int | None,
-    seed: int | None,
-    engine: str | None,
-    jobs: int,
-    output: tuple[Path, ...],
-    also: tuple[Path, ...],
-    overwrite: bool,
-    as_json: bool,
+    output: StudyOutput,
     quiet: bool,
     functions: OwnFunctions | None,
+    **run: Any,
 ) -> None:
     """Find the decisions of BOOK with which a statistic is largest, or smallest, and say how sure that is.
 
     Ctrl-C ends the search with the best that was found by then.
     """
     from xlmc.analysis.studies.optimising import optimise as study
-    from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import step_line
-    from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.studies.optimise import optimise_report
-    from xlmc.outputs.study_report import Files
 
-    model = load(book, functions=functions)
-    use_number_style(model.definitions.settings.number_style)
-    files = Files((*output, *also), [book], overwrite=overwrite, of_run=True, functions=functions)
-    files.check()
+    model, files = output.open(book, functions, of_run=True)
     with step_line(quiet) as tell:
         found = study(
             model,
@@ -112,14 +88,11 @@ def optimise(
             indifference=indifference,
             allow_lost=allow_lost,
             runs=runs,
-            trials=trials,
-            seed=seed,
-            engine=engine,
-            jobs=jobs,
+            **run,
             tell=tell,
         )
     report = optimise_report(found, _again(book, decision, indifference, allow_lost, runs, found))
-    written = give_out(report, files.writers(report), as_json, [f"{report.below}.", *report.blocks])
+    written = output.give(report, files)
     conclude(written, found.run, _doubts(found))
 
 

@@ -3,22 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from xlmc.cli.options import (
     FilePath,
     chance_option,
-    engine_option,
-    functions_option,
-    jobs_option,
-    quiet_option,
-    seed_option,
     tolerance_option,
-    trials_option,
 )
-from xlmc.cli.study_output import STUDY_OF_A_RUN, conclude, give_out, study_options
+from xlmc.cli.study_output import StudyOutput, conclude, study_run_options
 
 if TYPE_CHECKING:
     from xlmc.excel.own_functions import OwnFunctions
@@ -53,13 +47,7 @@ __all__ = ["screen"]
     is_flag=True,
     help="Also hold each assumption that may be held at the ends of its range: does it have to be known better?",
 )
-@trials_option("each run")
-@seed_option("each run")
-@engine_option
-@jobs_option
-@study_options(STUDY_OF_A_RUN)
-@quiet_option
-@functions_option
+@study_run_options("each run")
 def screen(
     book: Path,
     tolerance: tuple[str, ...],
@@ -68,31 +56,19 @@ def screen(
     freeze: tuple[str, ...],
     forecast: tuple[str, ...],
     ends: bool,
-    trials: int | None,
-    seed: int | None,
-    engine: str | None,
-    jobs: int,
-    output: tuple[Path, ...],
-    also: tuple[Path, ...],
-    overwrite: bool,
-    as_json: bool,
+    output: StudyOutput,
     quiet: bool,
     functions: OwnFunctions | None,
+    **run: Any,
 ) -> None:
     """Find which assumptions of BOOK may be held at their base values, and which filters may be left out, without
     changing its answers.
     """
     from xlmc.analysis.studies import screening
-    from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import step_line
-    from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.studies.screen import printed, screen_report
-    from xlmc.outputs.study_report import Files
 
-    model = load(book, functions=functions)
-    use_number_style(model.definitions.settings.number_style)
-    files = Files((*output, *also), [book], overwrite=overwrite, functions=functions, of_run=True)
-    files.check()
+    model, files = output.open(book, functions, of_run=True)
     with step_line(quiet) as tell:
         found = screening.screen(
             model,
@@ -102,17 +78,10 @@ def screen(
             sets=freeze,
             judged_by=forecast,
             ends=ends,
-            trials=trials,
-            seed=seed,
-            engine=engine,
-            jobs=jobs,
+            **run,
             tell=tell,
         )
     report = screen_report(found)
-    written = give_out(
-        report,
-        files.writers(report),
-        as_json,
-        [f"{report.below.partition(':')[0]}: what it could do without", *printed(found)],
-    )
+    said = f"{report.below.partition(':')[0]}: what it could do without"
+    written = output.give(report, files, [said, *printed(found)])
     conclude(written, found.run, ended=found.ended)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.options import FilePath, functions_option
-from xlmc.cli.study_output import STUDY, give_out, study_options
+from xlmc.cli.study_output import STUDY, StudyOutput, study_options
 
 if TYPE_CHECKING:
     from xlmc.excel.own_functions import OwnFunctions
@@ -34,24 +34,19 @@ def seek(
     by: str,
     low: float | None,
     high: float | None,
-    output: tuple[Path, ...],
-    also: tuple[Path, ...],
-    overwrite: bool,
-    as_json: bool,
+    output: StudyOutput,
     functions: OwnFunctions | None,
 ) -> None:
     """Find the value of one cell of BOOK at which another has a given value, all else as it is in the workbook."""
     from xlmc.analysis.studies import seek as study
     from xlmc.cli.printing import use_number_style
     from xlmc.outputs.studies.seek import seek_report
-    from xlmc.outputs.study_report import Files
 
-    files = Files((*output, *also), [book], overwrite=overwrite, functions=functions)
-    files.check()
+    files = output.files(book, functions=functions)
     found = study.seek(book, cell, to, by, low=low, high=high, functions=functions)
     use_number_style(found.number_style)
     report = seek_report(found)
-    written = give_out(report, files.writers(report), as_json, [f"{report.below}.", *report.blocks])
+    written = output.give(report, files)
     written.check()
     if not found.values.size:
         raise click.exceptions.Exit(NOT_FOUND)

@@ -1,23 +1,34 @@
-"""How `xlmc compare`, `screen`, `stability`, `fit` and `verify` give out what they found: files, the terminal, JSON."""
+"""The command of a study: the options that all have, and how it gives out what it found: files, the terminal, JSON."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import wraps
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
 
 import click
 
 from xlmc.cli.blocks import show
-from xlmc.cli.options import number_style_option
+from xlmc.cli.options import (
+    engine_option,
+    functions_option,
+    jobs_option,
+    number_style_option,
+    quiet_option,
+    seed_option,
+    trials_option,
+)
 from xlmc.cli.output_options import with_files, with_options
 from xlmc.cli.terminal import INTERRUPTED, say, say_json
 from xlmc.cli.writing import Written, write_files
 
 if TYPE_CHECKING:
+    from xlmc.excel.own_functions import OwnFunctions
+    from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.document.parts import Block
-    from xlmc.outputs.study_report import StudyReport
+    from xlmc.outputs.study_report import Files, StudyReport
 
 STUDY = "a sheet (.xlsx), a document (.pdf, .docx), a page (.html), the result as JSON (.json)"
 STUDY_OF_A_RUN = f"{STUDY}, the accepted trials of the book's run (.csv, .parquet), that run (.xlmcrun)"
@@ -31,17 +42,76 @@ __all__ = [
     "NOT_TO_BE_USED",
     "STUDY",
     "STUDY_OF_A_RUN",
+    "StudyOutput",
     "conclude",
     "end_early",
-    "give_out",
     "study_options",
+    "study_run_options",
 ]
 
 
-def study_options(kinds: str) -> Callable[[Command], Command]:
-    """Add `-o`, the options that stand for one kind of file each, `--overwrite` and `--json`.
+class StudyOutput(NamedTuple):
+    """Where a study goes, as it was typed: files, and the terminal or JSON."""
 
-    The command is given the files as `output` and `also`, `overwrite` and `as_json`.
+    paths: tuple[Path, ...]
+    overwrite: bool
+    as_json: bool
+
+    def files(self, *sources: Path, **of: Any) -> Files:
+        """Return the files to write, which all can be written.
+
+        Args:
+            sources: the workbooks that are studied.
+            of: what else `Files` is to know.
+
+        Raises:
+            XlmcError: one of them cannot be written; see `Files.check`.
+        """
+        from xlmc.outputs.study_report import Files
+
+        files = Files(self.paths, sources, overwrite=self.overwrite, **of)
+        files.check()
+        return files
+
+    def open(self, book: Path, functions: OwnFunctions | None, **of: Any) -> tuple[CompiledModel, Files]:
+        """Load the workbook, whose style all numbers have from now on, and return it with the files to write.
+
+        Raises:
+            XlmcError: the workbook cannot be run, or a file cannot be written.
+        """
+        from xlmc.cli.printing import use_number_style
+        from xlmc.montecarlo.model.loading import load
+
+        model = load(book, functions=functions)
+        use_number_style(model.definitions.settings.number_style)
+        return model, self.files(book, functions=functions, **of)
+
+    def give(self, report: StudyReport, files: Files, said: Iterable[Block | str] | None = None) -> Written:
+        """Write the files of a study, then print its result as JSON, or what it says and where the files are.
+
+        Args:
+            report: of the study.
+            files: what to write.
+            said: what is printed, in order; by default all of the report, below the line of its workbook.
+
+        Returns:
+            What was written; what failed is to be raised after the warnings (`Written.check`).
+        """
+        from xlmc.outputs.document.parts import blocks_of
+
+        written = write_files(files.writers(report))
+        if self.as_json:
+            say_json(report.json())
+        else:
+            show(blocks_of([f"{report.below}.", *report.blocks] if said is None else said))
+            written.print_paths()
+        return written
+
+
+def study_options(kinds: str) -> Callable[[Command], Command]:
+    """Add `-o`, the options that stand for one kind of file each, `--overwrite`, `--json` and the style of numbers.
+
+    The command is given all of them as `output`, a `StudyOutput`.
 
     Args:
         kinds: what it writes, as the help says it.
@@ -53,34 +123,27 @@ def study_options(kinds: str) -> Callable[[Command], Command]:
     )
 
     def add(command: Command) -> Command:
-        return with_files(text, ("html", "pdf", "docx"))(with_options(*others, number_style_option)(command))
+        @wraps(command)
+        def packed(
+            *args: Any, output: tuple[Path, ...], also: tuple[Path, ...], overwrite: bool, as_json: bool, **rest: Any
+        ) -> Any:
+            return command(*args, output=StudyOutput((*output, *also), overwrite, as_json), **rest)
+
+        with_others = with_options(*others, number_style_option)(cast(Command, packed))
+        return with_files(text, ("html", "pdf", "docx"))(with_others)
 
     return add
 
 
-def give_out(
-    report: StudyReport, files: Iterable[tuple[Path, Callable[[], Path]]], as_json: bool, said: Iterable[Block | str]
-) -> Written:
-    """Write the files of a study, then print its result as JSON, or what it says and where the files are.
+def study_run_options(of: str, kinds: str = STUDY_OF_A_RUN) -> Callable[[Command], Command]:
+    """Add what studies that run the workbook have: `trials`, `seed`, `engine`, `jobs`, `output`, `quiet`, `functions`.
 
     Args:
-        report: of the study.
-        files: what to write, and how.
-        as_json: print the result as JSON.
-        said: what else is printed, in order.
-
-    Returns:
-        What was written; what failed is to be raised after the warnings (`Written.check`).
+        of: `the run`, `each run`.
+        kinds: as for `study_options`.
     """
-    from xlmc.outputs.document.parts import blocks_of
-
-    written = write_files(files)
-    if as_json:
-        say_json(report.json())
-    else:
-        show(blocks_of(said))
-        written.print_paths()
-    return written
+    outputs = study_options(kinds), quiet_option, functions_option
+    return with_options(trials_option(of), seed_option(of), engine_option, jobs_option, *outputs)
 
 
 def conclude(written: Written, run: RunResult, doubts: Sequence[str] = (), ended: str = "") -> None:

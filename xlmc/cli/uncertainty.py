@@ -16,7 +16,7 @@ from xlmc.cli.options import (
     quiet_option,
     seed_option,
 )
-from xlmc.cli.study_output import STUDY, conclude, give_out, study_options
+from xlmc.cli.study_output import STUDY, StudyOutput, conclude, study_options
 
 if TYPE_CHECKING:
     from xlmc.excel.own_functions import OwnFunctions
@@ -66,10 +66,7 @@ def uncertainty(
     seed: int | None,
     engine: str | None,
     jobs: int,
-    output: tuple[Path, ...],
-    also: tuple[Path, ...],
-    overwrite: bool,
-    as_json: bool,
+    output: StudyOutput,
     quiet: bool,
     functions: OwnFunctions | None,
 ) -> None:
@@ -77,17 +74,11 @@ def uncertainty(
     varies in an inner one.
     """
     from xlmc.analysis.studies import uncertainty as study
-    from xlmc.cli.printing import use_number_style
     from xlmc.cli.progress_bar import step_line
-    from xlmc.montecarlo.model.loading import load
     from xlmc.outputs.studies.uncertainty import uncertainty_report
-    from xlmc.outputs.study_report import TWO_LOOPS_NOT_KEPT, Files
+    from xlmc.outputs.study_report import TWO_LOOPS_NOT_KEPT
 
-    model = load(book, functions=functions)
-    use_number_style(model.definitions.settings.number_style)
-    paths = (*output, *also)
-    files = Files(paths, [book], overwrite=overwrite, functions=functions, of_run=True, not_kept=TWO_LOOPS_NOT_KEPT)
-    files.check()
+    model, files = output.open(book, functions, of_run=True, not_kept=TWO_LOOPS_NOT_KEPT)
     with step_line(quiet) as tell:
         found = study.uncertainty(
             model,
@@ -100,9 +91,9 @@ def uncertainty(
             seed=seed,
             engine=engine,
             jobs=jobs,
-            keep_trials=any(path.suffix.casefold() in (".csv", ".parquet") for path in paths),
+            keep_trials=any(path.suffix.casefold() in (".csv", ".parquet") for path in output.paths),
             tell=tell,
         )
     report = uncertainty_report(found)
-    written = give_out(report, files.writers(report), as_json, [report.below, *report.blocks])
+    written = output.give(report, files)
     conclude(written, found.run)

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import click
 
 from xlmc.cli.options import FilePath, functions_option
-from xlmc.cli.study_output import STUDY, give_out, study_options
+from xlmc.cli.study_output import STUDY, StudyOutput, study_options
 from xlmc.cli.terminal import plain
 
 if TYPE_CHECKING:
@@ -32,10 +32,7 @@ _SHOWN, _WRITTEN = 50, 2_000
 def verify(
     book: Path,
     everything: bool,
-    output: tuple[Path, ...],
-    also: tuple[Path, ...],
-    overwrite: bool,
-    as_json: bool,
+    output: StudyOutput,
     functions: OwnFunctions | None,
 ) -> None:
     """Recompute the formulas of BOOK at the base case and compare with the values that are saved in it."""
@@ -47,15 +44,14 @@ def verify(
     from xlmc.montecarlo.definitions.definitions_reader import number_style_of, read_definitions
     from xlmc.montecarlo.model.labels import calculate_labels
     from xlmc.outputs.document.parts import blocks_of
-    from xlmc.outputs.study_report import Files, StudyReport
+    from xlmc.outputs.study_report import StudyReport
 
     workbook = read_workbook(book, functions=functions)
     use_number_style(number_style_of(workbook))
     definitions = None if everything else read_definitions(calculate_labels(workbook), ENGINES)
     if definitions is not None and not definitions.forecasts and not definitions.filters:
         raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")
-    files = Files((*output, *also), [book], overwrite=overwrite, functions=functions)
-    files.check()
+    files = output.files(book, functions=functions)
     found = check(workbook, definitions)
     cells = "every formula cell" if everything else "the formula cells that forecasts and filters need"
     report = StudyReport(
@@ -65,7 +61,7 @@ def verify(
         "Verification",
         partial(_as_json, found),
     )
-    written = give_out(report, files.writers(report), as_json, _blocks(found, workbook.saved_by, _SHOWN))
+    written = output.give(report, files, _blocks(found, workbook.saved_by, _SHOWN))
     written.check()
     if found.count(Status.DIFFERING):
         raise click.exceptions.Exit(DIFFERS)

@@ -108,8 +108,9 @@ def _compiled(source: str, **options: Any) -> Any:
     try:
         return typst.compile(data, ignore_system_fonts=False, **options)
     except typst.TypstError as error:
-        hint = "Install a font that has the letter, or write the report as --docx"
-        raise SimulationError(f"a PDF cannot be made: {str(error).splitlines()[0]}", hint=hint) from error
+        what = str(error).splitlines()[0]
+        hint = "Install a font that has the letter, or name a .docx file" if "font" in what else "Name a .docx file"
+        raise SimulationError(f"a PDF cannot be made: {what}", hint=hint) from error
 
 
 def _source(document: Document) -> str:

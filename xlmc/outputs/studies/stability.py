@@ -12,10 +12,10 @@ from xlmc.errors import capitalised
 if TYPE_CHECKING:
     from xlmc.analysis.studies.stability import CellDigits, Finding, Stability
     from xlmc.excel.address import Cell
-    from xlmc.outputs.document.parts import Table
+    from xlmc.outputs.document.parts import Block, Table
     from xlmc.outputs.study_report import StudyReport
 
-__all__ = ["cells", "count", "finding_heading", "finding_sentences", "sentences", "stability_report"]
+__all__ = ["stability_report"]
 
 
 _LISTED = 20
@@ -24,7 +24,7 @@ _LISTED = 20
 _LEVELS = {"WRONG": "Wrong", "DOUBTFUL": "Doubtful", "NOTE": "Note"}
 
 
-def count(found: Stability) -> str:
+def _count(found: Stability) -> str:
     """Say how many findings there are; of a search that was ended early no more than that it had none by then."""
     levels = [finding.level.name for finding in found.findings]
     counts = {word.lower(): levels.count(level) for level, word in _LEVELS.items() if level in levels}
@@ -42,38 +42,34 @@ def stability_report(found: Stability, all_cells: bool = False) -> StudyReport:
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
-    findings = [text for number, one in enumerate(found.findings, start=1) for text in _finding_texts(number, one)]
+    findings = [block for number, one in enumerate(found.findings, start=1) for block in _finding_blocks(number, one)]
     blocks = blocks_of(
         [
-            f"{count(found).capitalize()}.",
+            f"{_count(found).capitalize()}.",
             *findings,
-            *([cells(found, all_cells)] if found.cells else []),
-            *sentences(found),
+            *([_cells(found, all_cells)] if found.cells else []),
+            *_sentences(found),
         ]
     )
     below = f"{found.run.model.workbook.name}: {count_text(found.run.trials)} trials, seed {found.run.settings.seed}"
     return StudyReport("Can the digits be trusted?", below, blocks, "Stability", partial(_as_json, found), found.run)
 
 
-def _finding_texts(number: int, finding: Finding) -> Iterator[str]:
-    yield finding_heading(number, finding, finding.formula)
-    yield from finding_sentences(finding)
-    if finding.instead:
-        yield f"Instead: {finding.instead}"
+def _finding_blocks(number: int, finding: Finding) -> Iterator[str | Block]:
+    from xlmc.outputs.document.parts import Code, Heading
 
-
-def finding_heading(number: int, finding: Finding, formula: str) -> str:
     name = f" {finding.name}" if finding.name else ""
-    return f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}   {formula}"
-
-
-def finding_sentences(finding: Finding) -> Iterator[str]:
+    yield Heading(f"{number}. {_LEVELS[finding.level.name]}: {finding.cell}{name}")
+    yield Code(finding.formula)
     yield from (f"{capitalised(text)}." for text in (finding.what, finding.effect))
     if finding.where:
         yield f"Where: {'; '.join(map(str, finding.where))}"
+    if finding.instead:
+        yield "Instead:"
+        yield Code(finding.instead)
 
 
-def cells(found: Stability, all_cells: bool) -> Table:
+def _cells(found: Stability, all_cells: bool) -> Table:
     from xlmc.montecarlo.number_text import number_text
     from xlmc.outputs.document.parts import Table
 
@@ -105,7 +101,7 @@ def cells(found: Stability, all_cells: bool) -> Table:
     return Table("What cells amplify and lose", headings, rows, (first - 1, first, first + 2, first + 3))
 
 
-def sentences(found: Stability) -> Iterator[str]:
+def _sentences(found: Stability) -> Iterator[str]:
     from xlmc.montecarlo.number_text import count_text
 
     yield (

@@ -182,8 +182,8 @@ def _tornado(axes: Axes, simulation: RunResult, name: str | None) -> None:
         for bar in bars
     )
     title = f"{_heading(each)}: one assumption at a time, no filter"
-    across = f"{each.answer.units or 'value'} (light: with the assumption at its 10th percentile, dark: at its 90th)"
-    draw_on(axes, Chart(title, across, Bars(tuple(spans)), title))
+    looks = (("light", "with the assumption at its 10th percentile"), ("dark", "at its 90th"))
+    draw_on(axes, Chart(title, each.answer.units or "value", Bars(tuple(spans), looks=looks), title))
     _write_numbers(axes.xaxis, each)
 
 

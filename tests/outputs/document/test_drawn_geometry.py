@@ -13,7 +13,8 @@ import pytest
 
 from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.stating import Kind
-from xlmc.outputs.document.drawings import COLOURS, drawn
+from xlmc.outputs.document.colours import COLOURS
+from xlmc.outputs.document.drawings import drawn
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Line, Lines, Shape
 
 NAME = "{http://www.w3.org/2000/svg}"

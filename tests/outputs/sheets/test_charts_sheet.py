@@ -36,7 +36,8 @@ def _cells(book, reference):
 
 
 def _title(book, chart):
-    return _cells(book, chart.title.tx.strRef.f)[0]
+    title = chart.title.tx
+    return _cells(book, title.strRef.f)[0] if title.strRef else title.rich.p[0].r[0].t
 
 
 def test_every_forecast_has_its_charts_and_those_of_one_unit_are_compared(book, charts):

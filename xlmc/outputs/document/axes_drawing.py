@@ -38,7 +38,7 @@ def draw_on(axes: Axes, chart: Chart) -> None:
             _lines(axes, chart.data)
         case Shape():
             _shape(axes, chart.data)
-    dress(axes, chart.across)
+    dress(axes, chart.across_and_looks)
     if chart.title:
         axes.set_title(chart.title, **TITLE)
 

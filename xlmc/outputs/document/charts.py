@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.studies.sensitivity.measures import noise
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Line, Lines, Shape
 from xlmc.outputs.filter_effect import shapes_of
 from xlmc.outputs.summary import frequent_texts, shares_of
@@ -14,10 +16,20 @@ from xlmc.outputs.summary import frequent_texts, shares_of
 if TYPE_CHECKING:
     from xlmc.analysis.studies.sensitivity import FilterLimit, ForecastSensitivity
     from xlmc.montecarlo.simulation.simulation import RunResult
-    from xlmc.montecarlo.statistics import Estimate
     from xlmc.outputs.histogram import Figure
 
-__all__ = ["contribution_chart", "influence_chart", "limit_chart", "shape_chart", "shares_chart", "tornado_chart"]
+__all__ = [
+    "acceptance_chart",
+    "influence_charts",
+    "limit_chart",
+    "limit_chart_of_ranges",
+    "shape_chart",
+    "shares_chart",
+    "tornado_chart",
+]
+
+SHARE: Final = Form(Kind.PERCENT)
+"""How shares are written."""
 
 
 def shape_chart(simulation: RunResult, name: str) -> Chart | None:
@@ -30,42 +42,48 @@ def shape_chart(simulation: RunResult, name: str) -> Chart | None:
     return Chart("", "", shape, f"{name}: before filtering pale, accepted as a line", 28.0)
 
 
-def influence_chart(found: ForecastSensitivity, most: int, title: str = "") -> Chart:
-    """Chart the share of a forecast's variance that each assumption explains, in %, the largest on top.
+def influence_charts(found: ForecastSensitivity, most: int, *, sobol: bool = False) -> list[Chart]:
+    """Chart what each assumption has to do with a forecast, the largest influence on top; bars of noise are pale.
 
-    Bars that may be noise are pale.
+    Four charts: the variance explained; the dependence, or the total effects where there are Sobol indices; the rank
+    correlation; and the contribution to variance, signed, as Crystal Ball shows it.
     """
-    pairs = zip(found.influences[:most], noise(found), strict=False)
-    bars = tuple(_share(each.assumption, each.explained, weak.explained) for each, weak in pairs)
-    return _bars(title, "Variance explained", "Share of the variance explained, %", bars)
+    of = list(zip(found.influences[:most], noise(found), strict=False))
+    total = ("Total effect (Sobol)", "Share of the variance, alone and with others")
+    dependence = ("Dependence", "0 %: none; 100 %: nothing else matters")
+    others = [(each.assumption, each.total if sobol else each.dependence) for each, _ in of]
+    pale = [weak.total if sobol else weak.dependence for _, weak in of]
+    second = [_bar(name, share, weak) for (name, share), weak in zip(others, pale, strict=True) if share is not None]
+    explained = [_bar(each.assumption, each.explained, weak.explained) for each, weak in of]
+    ranks = [_bar(each.assumption, each.rank_correlation, weak.correlation) for each, weak in of]
+    parts = [_bar(each.assumption, each.contribution, weak.correlation) for each, weak in of]
+    return [
+        _bars("Variance explained", "Share of the variance explained", explained, SHARE),
+        _bars(*(total if sobol else dependence), second, SHARE),
+        _bars("Rank correlation", "Rank correlation with the forecast (Spearman)", ranks),
+        _bars("Contribution to variance (approximate)", "Squared rank correlation, % of all, signed", parts, SHARE),
+    ]
 
 
-def contribution_chart(found: ForecastSensitivity, most: int, title: str) -> Chart:
-    """Chart the squared rank correlation of each assumption, in % of their sum and signed, as Crystal Ball shows it."""
-    pairs = zip(found.influences[:most], noise(found), strict=False)
-    bars = tuple(_share(each.assumption, each.contribution, weak.correlation) for each, weak in pairs)
-    return _bars(title, title, "Squared rank correlation, % of all, signed", bars)
-
-
-def tornado_chart(found: ForecastSensitivity, most: int, title: str) -> Chart:
+def tornado_chart(found: ForecastSensitivity, most: int) -> Chart:
     """How far the forecast moves from its base case as one assumption moves alone."""
     base = found.base or 0.0
-    bars = tuple(
+    bars = [
         Bar(
             bar.assumption,
             tuple((0.0, end - base, look) for end, look in ((bar.low, "light"), (bar.high, "dark")) if end is not None),
         )
         for bar in found.bars[:most]
-    )
-    units = f", {found.change_units}" if found.change_units else ""
-    return _bars(title, title, f"Change{units} (light: at 10 %, dark: at 90 %)", bars, found.change_form)
+    ]
+    looks = (("light", "at 10 %"), ("dark", "at 90 %"))
+    return _bars("Tornado", _change("Change from the base case", found.change_units), bars, found.change_form, looks)
 
 
 def shares_chart(figure: Figure) -> Chart:
     """Draw the share of each text, or of yes and no, with its error."""
     shares = shares_of(figure.answer)
-    bars = tuple(_share(text or "(empty)", share, pale=False) for text, share in frequent_texts(shares)[0].items())
-    return Chart("", "Accepted trials, %", Bars(bars), f"{figure.name}: {figure.said}", 125.0)
+    bars = tuple(_bar(text or "(empty)", share, pale=False) for text, share in frequent_texts(shares)[0].items())
+    return Chart("", "Share of the accepted trials", Bars(bars, SHARE), f"{figure.name}: {figure.said}", 125.0)
 
 
 def limit_chart(limit: FilterLimit, indexes: list[int], unit: str, form: Form = PLAIN) -> Chart:
@@ -77,26 +95,55 @@ def limit_chart(limit: FilterLimit, indexes: list[int], unit: str, form: Form = 
         unit: theirs.
         form: how changes of them are written.
     """
+    changes = {limit.slopes[index].forecast: [p.answers[index].change for p in limit.points] for index in indexes}
+    return _moved("Change of each mean", limit, changes, _change("Change of the mean", unit), form)
+
+
+def limit_chart_of_ranges(limit: FilterLimit) -> Chart:
+    """Chart the same of forecasts of any units: each change as a part of the forecast's central range."""
+    now = next(point for point in limit.points if point.limit == limit.limit).answers
+    widths = {each.forecast: each.high.value - each.low.value for each in now}
+    changes = {
+        slope.forecast: [_part(each.answers[index].change, widths[slope.forecast]) for each in limit.points]
+        for index, slope in enumerate(limit.slopes)
+    }
+    return _moved("Change of each mean", limit, changes, "Change of the mean, of the central range", SHARE)
+
+
+def acceptance_chart(limit: FilterLimit) -> Chart:
+    """Chart the share of the trials that is accepted as a limit of a filter moves."""
+    shares = {"Share": [point.acceptance for point in limit.points]}
+    return _moved("Share of trials accepted", limit, shares, "Share", SHARE)
+
+
+def _moved(title: str, limit: FilterLimit, found: dict[str, list[Estimate]], upwards: str, form: Form) -> Chart:
+    """Chart numbers at each value of a limit, with a line for each name."""
     lines = tuple(
-        Line(
-            limit.slopes[index].forecast,
-            tuple((p.limit, p.answers[index].change.value, p.answers[index].change.error) for p in limit.points),
-        )
-        for index in indexes
+        Line(name, tuple((p.limit, each.value, each.error) for p, each in zip(limit.points, numbers, strict=True)))
+        for name, numbers in found.items()
     )
-    upwards = f"Change of the mean{f', {unit}' if unit else ''}"
-    across = f"Limit: {limit.filter} {limit.relation}"
-    said = f"Change of each mean: {', '.join(line.name for line in lines)}"
     data = Lines(lines, upwards, dots=True, now=limit.limit, from_zero=True, form_upwards=form)
-    return Chart("Change of each mean", across, data, said)
+    return Chart(title, f"Limit: {limit.filter} {limit.relation}", data, f"{title}: {', '.join(found)}")
 
 
-def _bars(title: str, what: str, across: str, bars: tuple[Bar, ...], form: Form = PLAIN) -> Chart:
-    return Chart(title, across, Bars(bars, form), f"{what}: {', '.join(bar.name for bar in bars)}", 125.0)
+def _part(found: Estimate, whole: float) -> Estimate:
+    if whole <= 0.0:
+        return Estimate(math.nan)
+    return Estimate(found.value / whole, None if found.error is None else found.error / whole)
 
 
-def _share(name: str, found: Estimate, pale: bool) -> Bar:
-    value = 100.0 * found.value if math.isfinite(found.value) else 0.0
-    error = None if found.error is None else 100.0 * found.error
-    whisker = None if error is None else (value - error, value + error)
+def _change(what: str, units: str) -> str:
+    return f"{what}, {units}" if units else what
+
+
+def _bars(
+    title: str, across: str, bars: list[Bar], form: Form = PLAIN, looks: tuple[tuple[str, str], ...] = ()
+) -> Chart:
+    said = f"{title}: {', '.join(bar.name for bar in bars)}"
+    return Chart(title, across, Bars(tuple(bars), form, looks), said, 125.0)
+
+
+def _bar(name: str, found: Estimate, pale: bool) -> Bar:
+    value = found.value if math.isfinite(found.value) else 0.0
+    whisker = None if found.error is None else (value - found.error, value + found.error)
     return Bar(name, ((0.0, value, "light" if pale else "dark"),), whisker)

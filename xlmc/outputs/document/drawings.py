@@ -15,13 +15,12 @@ from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
 from xlmc.montecarlo.number_text import fixed_text, number_text, two_digit_exponent
-from xlmc.outputs.document.colours import DARK, GRID, INK, LIGHT
+from xlmc.outputs.document.colours import COLOURS, DARK, GRID, INK, LIGHT
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Drawing, Line, Lines, Shape
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.summary import percent
 
 __all__ = [
-    "COLOURS",
     "FONT",
     "Scale",
     "drawing",
@@ -39,8 +38,6 @@ _POINTS = 401
 _LONGEST, _BESIDE = 40, 20
 """Characters of a name at the left of a bar, and beside the lines."""
 _FILLS = {"dark": DARK, "light": LIGHT}
-COLOURS = ("#1F3044", "#2F6DA8", "#C8553D", "#4F8A5B", "#8E5EA2", "#D99A2B")
-"""Of lines."""
 _ROUND_STEPS = (1.0, 2.0, 5.0, 10.0)
 _ROOM = 0.03
 _NARROW = 100.0
@@ -120,10 +117,9 @@ def _bars(chart: Chart, shown: Bars) -> Drawing:
     left, right, row = 220.0, 548.0, 17.0
     top = 26.0 if chart.title else 6.0
     bottom = top + row * len(shown.bars)
-    ends = [end for bar in shown.bars for piece in bar.pieces for end in piece[:2]]
-    ends += [end for bar in shown.bars for end in bar.whisker or ()]
-    across = scale_of([0.0, *ends], left, right, form=shown.form)
-    if min([0.0, *(end for end in ends if math.isfinite(end))]) == 0.0:
+    ends = [0.0, *shown.ends]
+    across = scale_of(ends, left, right, form=shown.form)
+    if min(ends) == 0.0:
         across = replace(across, low=0.0)
     found = _title(chart)
     found += [line_to(across(tick), top, across(tick), bottom, GRID) for tick in across.ticks]
@@ -131,7 +127,7 @@ def _bars(chart: Chart, shown: Bars) -> Drawing:
     for index, bar in enumerate(shown.bars):
         found += _bar(bar, top + row * index, row, left, across)
     found.append(line_to(across(0.0), top, across(0.0), bottom, INK))
-    found.append(text_at((left + right) / 2, bottom + 28, chart.across))
+    found.append(text_at((left + right) / 2, bottom + 28, chart.across_and_looks))
     return drawing(found, 570.0, bottom + 34, chart.said, chart.width)
 
 
@@ -154,11 +150,10 @@ def _lines(chart: Chart, shown: Lines) -> Drawing:
     right, top, bottom = 420.0, 26.0 if chart.title else 10.0, 250.0
     points = [point for line in shown.all for point in _finite(line)]
     known = [shown.now] if shown.now is not None else []
-    reach = [value for _, y, error in points for value in (y - (error or 0.0), y + (error or 0.0))]
     if shown.share:
         y = scale_of([0.0, 1.0], bottom, top, form=Form(Kind.PERCENT))
     else:
-        y = scale_of([*[0.0] * shown.from_zero, *reach], bottom, top, form=shown.form_upwards)
+        y = scale_of(shown.heights, bottom, top, form=shown.form_upwards)
     left = max(60.0, 30.0 + _CHARACTER * max((len(text) for _, text in y.marks), default=0))
     x = scale_of([*known, *(point[0] for point in points)], left, right, form=shown.form_across)
     found = _title(chart)

@@ -8,6 +8,7 @@ cell that holds one brings its format along.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from datetime import date
@@ -124,10 +125,24 @@ class Bar:
 
 @dataclass(frozen=True, slots=True)
 class Bars:
-    """Bars from left to right, the first on top, with a line at 0; the axis shows numbers in a form."""
+    """Bars from left to right, the first on top, with a line at 0; the axis shows numbers in a form.
+
+    Attributes:
+        bars: from the top down.
+        form: how the numbers of the axis are written.
+        looks: what pieces in each look mean; empty where the difference needs no words.
+    """
 
     bars: tuple[Bar, ...]
     form: Form = PLAIN
+    looks: tuple[tuple[str, str], ...] = ()
+
+    @property
+    def ends(self) -> list[float]:
+        """All ends of pieces and whiskers that are numbers."""
+        found = [end for bar in self.bars for piece in bar.pieces for end in piece[:2]]
+        found += [end for bar in self.bars for end in bar.whisker or ()]
+        return [end for end in found if math.isfinite(end)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -175,6 +190,13 @@ class Lines:
         found = [point[0] for line in self.all for point in line.points]
         return min(found), max(found)
 
+    @property
+    def heights(self) -> list[float]:
+        """What the vertical axis reaches over: all finite y and the ends of their errors; also 0 where wanted."""
+        points = (point for line in self.all for point in line.points if math.isfinite(point[1]))
+        errors = ((point[1], (point[2] if len(point) > 2 else None) or 0.0) for point in points)
+        return [*[0.0] * self.from_zero, *(end for y, error in errors for end in (y - error, y + error))]
+
 
 @dataclass(frozen=True, slots=True)
 class Shape:
@@ -205,6 +227,12 @@ class Chart:
     data: Bars | Lines | Shape
     said: str
     width: float = 150.0
+
+    @property
+    def across_and_looks(self) -> str:
+        """The name of the horizontal axis, and what the looks of bars mean, where no legend says so."""
+        looks = ", ".join(f"{look}: {meaning}" for look, meaning in getattr(self.data, "looks", ()))
+        return f"{self.across} ({looks})" if looks else self.across
 
 
 Picture = Drawing | Chart

@@ -9,7 +9,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.statements.in_words import given_text
+from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.number_text import count_text
+from xlmc.outputs.document.charts import acceptance_chart, limit_chart, limit_chart_of_ranges
 from xlmc.outputs.document.content.limits import (
     NOT_MOVED,
     acceptance_table,
@@ -20,16 +22,15 @@ from xlmc.outputs.document.content.limits import (
     nothing_moves,
     slopes_table,
 )
+from xlmc.outputs.sheets.native_charts import native_chart
 from xlmc.outputs.sheets.sensitivity_charts import (
     CHART_ROWS,
     CHARTED,
     WIDTHS,
     Captioned,
     TableAt,
-    limit_chart,
     place_rows,
 )
-from xlmc.outputs.sheets.styles import bounds
 from xlmc.outputs.sheets.xlsx_writer import write_blocks
 
 if TYPE_CHECKING:
@@ -112,28 +113,17 @@ def _moved_chart(
 ) -> Captioned:
     shown = [forecasts[slope.forecast] for slope in limit.slopes]
     alike = len({(each.change_units, each.form.affixes) for each in shown}) == 1
-    unit = shown[0].change_units if alike and shown[0].form.factor == 1.0 else None
-    axis = "Change of the mean" + (", of the central range" if unit is None else f" ({unit})" if unit else "")
-    value, error, number = (_CHANGE, _CHANGE + 1, "General") if unit is not None else (_OF_RANGE, _OF_RANGE + 1, "0%")
-    chart = limit_chart(book, tables, "Change of each mean", _across(limit), axis, (0, _LIMIT, value, error), number)
-    return chart, moved_caption(limit)
+    if alike and shown[0].form.factor == 1.0:
+        form = shown[0].change_form if any(shown[0].form.affixes) else PLAIN
+        chart, value = limit_chart(limit, [*range(len(shown))], shown[0].change_units, form), _CHANGE
+    else:
+        chart, value = limit_chart_of_ranges(limit), _OF_RANGE
+    lines = [at.line(0, (_LIMIT, value, value + 1)) for at in tables]
+    return native_chart(book, chart, lines), moved_caption(limit)
 
 
-def _acceptance_chart(book: Workbook, limit: FilterLimit, acceptance: TableAt) -> Captioned:
-    title = "Share of trials accepted"
-    ends = _share_axis(limit)
-    chart = limit_chart(book, [acceptance], title, _across(limit), "Share", (0, 1, 3, 4), "0.0%", ends=ends)
-    return chart, _share_caption(limit)
-
-
-def _across(limit: FilterLimit) -> str:
-    return f"Limit: {limit.filter} {limit.relation} …"
-
-
-def _share_axis(limit: FilterLimit) -> dict[str, float]:
-    """Return the axis of the shares: from 0 to above the whiskers, and never beyond 100 %."""
-    tops = [each.acceptance.value + (each.acceptance.error or 0.0) for each in limit.points]
-    return bounds(0.0, min(1.0, max(tops, default=0.0)))
+def _acceptance_chart(book: Workbook, limit: FilterLimit, at: TableAt) -> Captioned:
+    return native_chart(book, acceptance_chart(limit), [at.line(0, (1, 3, 4))]), _share_caption(limit)
 
 
 def _brief(limit: FilterLimit) -> str:

@@ -12,16 +12,17 @@ from xlmc.analysis.results.statements import Pair, pairs_of
 from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
-from xlmc.outputs.document.colours import DARK
 from xlmc.outputs.document.content.pairs import pair_blocks
+from xlmc.outputs.document.parts import Chart, Line, Lines
 from xlmc.outputs.sheets.charts_sheet import Drawing, place_drawings
-from xlmc.outputs.sheets.curves_sheet import Curves, TableAt
-from xlmc.outputs.sheets.styles import Reference, across, axis_format, bounds, finish, straight, upwards
+from xlmc.outputs.sheets.curves_sheet import Curves
+from xlmc.outputs.sheets.native_charts import SeriesAt, native_chart
+from xlmc.outputs.sheets.styles import Reference
 from xlmc.outputs.sheets.xlsx_writer import write_blocks
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
-    from xlsxwriter.chart_scatter import ChartScatter
+    from xlsxwriter.chart import Chart as ExcelChart
     from xlsxwriter.workbook import Workbook
 
     from xlmc.montecarlo.definitions.definitions import Forecast
@@ -44,11 +45,12 @@ _PRINTED = 6
 
 @dataclass(frozen=True, slots=True)
 class _Points:
-    """A forecast's points: where its name and its values stand, and the limits of an axis for them."""
+    """A forecast's points: the name of an axis for them, where their name and their values stand, and these."""
 
-    axis: Reference
-    values: Reference
-    limits: dict[str, float]
+    axis: str
+    name: Reference
+    at: Reference
+    values: list[float]
 
 
 def write_pairs(page: Page, book: Workbook, simulation: RunResult, curves: Curves, trials: TrialsAt) -> None:
@@ -85,14 +87,13 @@ def _drawings(
         return []
     found = {each.name: _points(curves, simulation, trials, each, known) for each in forecasts}
     titles = [f"{pair.first.name} and {pair.second.name}" for pair in pairs]
-    titled = curves.write(["Titles of the scatter charts"], "", ["Title"], [[Shown(each)] for each in titles], 60)
     points = f"the first {count_text(known.size)} accepted trials in which all of these forecasts are numbers"
     return [
         Drawing(
-            _scatter(book, found[pair.first.name], found[pair.second.name], titled, index),
-            f"Scatter chart {index + 1}. {titles[index]}: {points}.",
+            _scatter(book, title, found[pair.first.name], found[pair.second.name]),
+            f"Scatter chart {number}. {title}: {points}.",
         )
-        for index, pair in enumerate(pairs)
+        for number, (title, pair) in enumerate(zip(titles, pairs, strict=True), 1)
     ]
 
 
@@ -107,32 +108,17 @@ def _points(
 ) -> _Points:
     """Return a forecast's values in these trials: those on the sheet Trials, or else a table of their own."""
     values = simulation.forecasts[forecast.name][known]
-    limits = bounds(float(values.min()), float(values.max()))
+    axis = f"{forecast.name} ({forecast.units})" if forecast.units else forecast.name
     if known[-1] < min(known.size, trials.shown):
         index = simulation.model.forecasts.index(forecast)
-        return _Points(trials.heading(index), trials.column(index, known.size), limits)
+        return _Points(axis, trials.heading(index), trials.column(index, known.size), values.tolist())
     digits = cells.spread_format(float(values.max()) - float(values.min()))
-    axis = f"{forecast.name} ({forecast.units})" if forecast.units else forecast.name
     rows = [[Shown(value, digits)] for value in values.tolist()]
     table = curves.write(["Points of a scatter chart"], axis, [forecast.name], rows)
-    return _Points(table.axis, table.column(0), limits)
+    return _Points(axis, table.heading(0), table.column(0), values.tolist())
 
 
-def _scatter(book: Workbook, first: _Points, second: _Points, titles: TableAt, index: int) -> ChartScatter:
-    chart = straight(book.add_chart({"type": "scatter"}))
-    chart.add_series(
-        {
-            "categories": first.values,
-            "values": second.values,
-            "marker": {
-                "type": "circle",
-                "size": 3,
-                "fill": {"color": DARK, "transparency": 50},
-                "border": {"none": True},
-            },
-        }
-    )
-    chart.set_x_axis(across(first.axis, num_format=axis_format("General"), **first.limits))
-    chart.set_y_axis(upwards(second.axis, "General", **second.limits))
-    finish(chart, titles.cell(index), legend=False)
-    return chart
+def _scatter(book: Workbook, title: str, first: _Points, second: _Points) -> ExcelChart:
+    cloud = Line(title, tuple(zip(first.values, second.values, strict=True)))
+    chart = Chart(title, first.axis, Lines((), second.axis, cloud=cloud), title)
+    return native_chart(book, chart, [SeriesAt(second.name, first.at, second.at)])

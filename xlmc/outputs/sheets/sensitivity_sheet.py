@@ -7,11 +7,11 @@ tables of influences and of moves that all are drawn from.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any, Final
+from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.studies.sensitivity.measures import noise
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.number_text import count_text, counted_text
+from xlmc.outputs.document.charts import influence_charts, tornado_chart
 from xlmc.outputs.document.content.sensitivity import (
     BENT,
     EXPLAINED_CHART,
@@ -27,20 +27,20 @@ from xlmc.outputs.document.content.sensitivity import (
     move_table,
     sensitivity_sentences,
 )
+from xlmc.outputs.sheets.native_charts import native_chart
 from xlmc.outputs.sheets.sensitivity_charts import (
     CHART_ROWS,
     CHARTED,
     WIDTHS,
     Captioned,
     TableAt,
-    bar_chart,
     place_rows,
     spider_chart,
-    tornado_chart,
 )
 from xlmc.outputs.sheets.xlsx_writer import write_blocks
 
 if TYPE_CHECKING:
+    from xlsxwriter.chart import Chart as ExcelChart
     from xlsxwriter.workbook import Workbook
 
     from xlmc.analysis.studies.sensitivity import ForecastSensitivity, Sensitivities
@@ -136,7 +136,7 @@ def _write_details(
     moves: Sequence[Captioned] = ()
     if forecast.influences:
         at = _write_table(page, influence_table(forecast, sobol))
-        bars = influence_charts(book, at, forecast, sobol)
+        bars = _influence_charts(book, at, forecast, sobol)
         influences = list(zip(bars, influence_captions(forecast, found.sobol_trials), strict=True))
         _write_rest(page, len(forecast.influences))
     else:
@@ -144,7 +144,7 @@ def _write_details(
     if forecast.bars:
         page.row += 1
         at = _write_table(page, move_table(forecast))
-        moves = list(zip(move_charts(book, at, forecast), move_captions(forecast), strict=True))
+        moves = list(zip(_move_charts(book, at, forecast), move_captions(forecast), strict=True))
     for drawn, width in ((influences[:1], _BARS_WIDE), (moves[:1], _TORNADO_WIDE)):
         for chart, _ in drawn:
             chart.set_plotarea({"layout": {"x": _NAMES_WIDE, "y": 0.13, "width": width, "height": 0.6}})
@@ -183,37 +183,19 @@ def _write_rest(page: Page, count: int) -> None:
         page.wide(f"and {count_text(count - ROWS)} more that explain less.", "remark", _LAST)
 
 
-def influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, sobol: bool) -> list[Any]:
-    """Variance explained, dependence or total effects, rank correlation and contribution to variance."""
-    of = noise(found)[:_DRAWN]
-    weak, unseen = [each.explained for each in of], [each.dependence for each in of]
-    flat, lone = [each.correlation for each in of], [each.total for each in of]
-    second = (
-        bar_chart(
-            book, at, "Total effect (Sobol)", "Share of the variance, alone and with others", _TOTAL, _TOTAL + 1, lone
-        )
-        if sobol
-        else bar_chart(
-            book, at, "Dependence", "0 %: none; 100 %: nothing else matters", _DEPENDENCE, _DEPENDENCE + 1, unseen
-        )
-    )
-    rank = "Rank correlation with the forecast (Spearman)"
-    share = "Squared rank correlations, scaled to 100 %, with their sign"
+def _influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, sobol: bool) -> list[ExcelChart]:
+    columns = (_EXPLAINED, _TOTAL if sobol else _DEPENDENCE, _RANK, _CONTRIBUTION)
+    charts = influence_charts(found, _DRAWN, sobol=sobol)
     return [
-        bar_chart(book, at, "Variance explained", "Share of the variance", _EXPLAINED, _EXPLAINED + 1, weak),
-        second,
-        bar_chart(book, at, "Rank correlation", rank, _RANK, _RANK + 1, flat, "0.0"),
-        bar_chart(book, at, "Contribution to variance (approximate)", share, _CONTRIBUTION, _CONTRIBUTION + 1, flat),
+        native_chart(book, chart, [at.series(column, column + 1)])
+        for chart, column in zip(charts, columns, strict=True)
     ]
 
 
-def move_charts(book: Workbook, at: TableAt, found: ForecastSensitivity) -> list[Any]:
-    """Return the charts: tornado and spider."""
-    units = f" ({found.change_units})" if found.change_units else ""
-    axis = f"Change of the forecast from its base case{units}"
-    first, last = _CHANGES, _CHANGES + 4
+def _move_charts(book: Workbook, at: TableAt, found: ForecastSensitivity) -> list[ExcelChart]:
+    tornado, first, last = tornado_chart(found, _DRAWN), _CHANGES, _CHANGES + 4
     number = "General" if found.form == PLAIN else change_format(found)
     return [
-        tornado_chart(book, at, "Tornado", axis, first, last, number),
-        spider_chart(book, at, "Spider", f"Change from the base case{units}", first, last, number),
+        native_chart(book, tornado, [at.series(first), at.series(last)]),
+        spider_chart(book, at, "Spider", tornado.across, first, last, number),
     ]

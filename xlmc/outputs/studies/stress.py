@@ -194,9 +194,10 @@ def _chart(found: Stressed, forecast: Forecast, ranked: list[tuple[Tail, Tail]])
         return None
     is_mean, units = "low" in found.base[forecast.name].numbers, f", {forecast.units}" if forecast.units else ""
     what = "Change of the mean" if is_mean else "Change of the share"
-    across = f"{what}{units * is_mean} (light: lowest {_percent(found.share)}, dark: highest)"
+    looks = (("light", f"lowest {_percent(found.share)}"), ("dark", "highest"))
     said = f"{_title(found, forecast)}: {what[0].lower()}{what[1:]} with each assumption in its tails"
-    return Figure(Chart("", across, Bars(tuple(bars), found.forms[forecast.name]), said, 125.0), said)
+    data = Bars(tuple(bars), found.forms[forecast.name], looks)
+    return Figure(Chart("", f"{what}{units * is_mean}", data, said, 125.0), said)
 
 
 def _of_scenario(found: Stressed, scenario: Scenario) -> Table:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.studies.sensitivity import sensitivities
@@ -13,7 +14,7 @@ from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.number_text import count_text, counted_text, fixed_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE, Shown
-from xlmc.outputs.document.charts import contribution_chart, influence_chart, tornado_chart
+from xlmc.outputs.document.charts import influence_charts, tornado_chart
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Block, Content, Figure, Paragraph, Table
 from xlmc.outputs.summary import first_forecasts, share_text
@@ -113,11 +114,10 @@ def sensitivity_sentences(found: Sensitivities, source: SourceBook) -> list[str]
 def sensitivity_figures(found: ForecastSensitivity, pairs: int) -> Iterator[Figure]:
     """Yield the charts of a forecast; `pairs` of trials gave Sobol indices, 0 where there are none."""
     if found.influences:
-        explained, _, _, contribution = influence_captions(found, pairs)
-        yield Figure(influence_chart(found, BARS, "Variance explained"), explained)
-        yield Figure(contribution_chart(found, BARS, "Contribution to variance (approximate)"), contribution)
+        explained, _, _, contribution = map(Figure, influence_charts(found, BARS), influence_captions(found, pairs))
+        yield from (explained, contribution)
     if found.bars and found.base is not None:
-        yield Figure(tornado_chart(found, BARS, "Tornado"), move_captions(found)[0])
+        yield Figure(tornado_chart(found, BARS), move_captions(found)[0])
 
 
 def influence_table(found: ForecastSensitivity, sobol: bool) -> Table:
@@ -278,7 +278,7 @@ def section(material: Material) -> Iterator[Block]:
     for each in shown:
         if each.influences and len(shown) <= _FEW:
             caption = f"What {each.forecast} depends on most."
-            yield Figure(influence_chart(each, most), caption)
+            yield Figure(replace(influence_charts(each, most)[0], title=""), caption)
         lines += influence_rows(each, most)
     if lines:
         heads = ("Forecast", "Assumption", "Variance explained", "Rank correlation")

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,6 +9,7 @@ from hypothesis import strategies as st
 
 from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.stating import Kind
+from xlmc.montecarlo.statistics.sample import Sample
 from xlmc.outputs.histogram import histogram
 
 RANDOM = np.random.default_rng(7)
@@ -147,3 +150,31 @@ def test_bars_hold_equally_many_points_of_a_grid(values, kind, width):
     assert len(held) > 3
     assert len(set(held)) == 1
     assert int((bins.inside + bins.outside).sum()) + bins.below + bins.above == values.size
+
+
+PARTS = {
+    "anywhere": (np.linspace(0.0, 9.5, 3_000) ** 1.3, 20),
+    "whole numbers, several a bar": (np.repeat(np.arange(200.0), 30), 10),
+    "whole numbers, a bar each": (np.repeat(np.arange(20.0), 30), 1),
+    "on a grid": (np.repeat(np.arange(80.0) / 10.0, 80), 2),
+    "outliers that are not drawn": (np.append(np.linspace(0.0, 1.0, 999), 1e6), 20),
+    "as fine as rounding": (1e12 + np.linspace(0.0, 1e5, 999), 1),
+    "one value": (np.full(50, 3.0), 20),
+}
+
+
+@pytest.mark.parametrize(("values", "parts"), PARTS.values(), ids=PARTS)
+def test_parts_of_bins_hold_the_trials_of_the_bins(values, parts):
+    bins = histogram(values, 0.0, 1.0)
+    found = bins.in_parts(Sample.of(values), 20)
+    assert found.shape == (bins.edges.size, parts)
+    assert found.sum(axis=1).tolist() == (bins.inside + bins.outside).tolist()
+
+
+def test_parts_of_bins_are_equally_wide():
+    values = np.linspace(0.0, 10.0, 10_001)
+    bins = histogram(values, 0.0, 1.0)
+    found = bins.in_parts(Sample.of(values), 4)
+    edges = np.append((bins.edges[:, None] + np.arange(4) * bins.width / 4).ravel(), bins.upper_edges[-1])
+    expected = [np.count_nonzero((values >= low) & (values < high)) for low, high in pairwise(edges)]
+    assert found.ravel().tolist() == expected

@@ -87,6 +87,7 @@ class Histogram:
         decimals: of the width.
         names: `(b,)` what each bar is of, where it has one value alone, on which it is centred; None elsewhere.
         form: how the edges are written.
+        grid: the step between the values that trials lie on; None where they lie anywhere.
     """
 
     edges: Floats
@@ -99,6 +100,7 @@ class Histogram:
     decimals: int
     names: tuple[str, ...] | None = None
     form: Form = PLAIN
+    grid: float | None = None
 
     @property
     def counted(self) -> int:
@@ -110,6 +112,31 @@ class Histogram:
         if self.names is not None:
             return np.asarray(self.edges + self.width)
         return multiples(self.width, round(float(self.edges[0] / self.width)) + 1, self.edges.size)
+
+    def in_parts(self, sample: Sample, most: int) -> NDArray[np.int64]:
+        """Count the trials in equal parts of each bin, `(b, p)`, p of them at most `most`: whole steps of a grid.
+
+        Args:
+            sample: what the bins were counted of.
+            most: parts of a bin.
+        """
+        x = sample.even
+        p = self._parts(sample, most)
+        if p == 1:
+            return (self.inside + self.outside)[:, np.newaxis]
+        starts = self.edges[:, np.newaxis] + np.arange(p) * (self.width / p)
+        edges = np.append(starts.ravel(), self.upper_edges[-1])
+        found = np.diff(np.searchsorted(x, edges - (0.0 if self.grid is None else _ON_GRID * self.grid), side="left"))
+        release(x)
+        return found.reshape(-1, p)
+
+    def _parts(self, sample: Sample, most: int) -> int:
+        """Return in how many parts a bin can be divided so that all are alike."""
+        if self.names is not None or self.width / most <= _FINEST * float(np.max(np.abs(self.upper_edges))):
+            return 1
+        step = 1.0 if self.grid is None and sample.whole else self.grid
+        steps = 0 if step is None else round(self.width / step)
+        return most if step is None else max(p for p in range(1, most + 1) if steps % p == 0 and (steps or p == 1))
 
     @property
     def labels(self) -> list[str]:
@@ -177,6 +204,7 @@ def histogram(values: Values, low: float, high: float, form: Form = PLAIN) -> Hi
         step=step,
         decimals=_decimals(width),
         form=form,
+        grid=None if grid is None else grid.step,
     )
 
 

@@ -924,6 +924,33 @@ def test_a_chart_is_zoomed_to_its_range_and_back(chromium, running, tmp_path):
     assert page.run(ends)[0] == whole
 
 
+def test_as_many_bars_are_drawn_as_are_typed(chromium, running, tmp_path):
+    page = Page(chromium, running(book=book_of_readings(tmp_path / "case.xlsx")))
+    bars = (
+        "const { panel } = Live.right.panels.get('speed'); const { edges, counts } = panel.bins;"
+        "return [counts.length, counts.reduce((sum, n) => sum + n, 0), edges[0], edges.at(-1)]"
+    )
+    box = partial(page.of, ".bar-count", "each.ariaLabel === given[0]", "Number of bars of speed")
+    own, trials, *ends = page.run(bars)
+    said = page.run("return document.querySelector('.statements').innerText")
+    page.type(box(), str(4 * own))
+    assert page.run(bars) == [4 * own, trials, *ends]
+    page.type(box(), "7.5")
+    assert "whole number of bars" in page.run("return Live.right.panels.get('speed').panel.find('.fault').textContent")
+    assert page.run(bars)[0] == 4 * own
+    page.at_rest(lambda: page.slider("High of t").send_keys("\ue014"))
+    page.browser.refresh()
+    page.loaded()
+    page.until("Live.right.panels.get('speed').panel")
+    assert box().get_attribute("value") == str(4 * own)
+    assert page.run(bars)[0] > 3 * own
+    page.type(box(), "")
+    page.at_rest(lambda: page.click(page.one("#reset")))
+    assert page.run(bars) == [own, trials, *ends]
+    assert page.run("return document.querySelector('.statements').innerText") == said
+    assert box().get_attribute("placeholder") == str(own)
+
+
 def test_decisions_and_solved_cells_are_moved(chromium, running, tmp_path):
     page = Page(chromium, running(book=book_of_decisions(tmp_path / "case.xlsx")))
     card = page.card("limit")

@@ -69,6 +69,9 @@ _VALUES_MOVING: Final = 400
 _VALUES_AT_REST: Final = 4_000
 """Values of a forecast that a chart counts between its grabbers from: `xlmc.outputs.page.payload` says how exactly."""
 
+_PARTS: Final = 20
+"""Parts of a bar, whose trials are counted apart, so that a window can draw more bars, or others."""
+
 _PERCENTS: Final = (5.0, 25.0, 50.0, 75.0, 95.0)
 _KNOWN: Final[WeakKeyDictionary[ForecastResult, list[tuple[str, Estimate]]]] = WeakKeyDictionary()
 """The estimates of each forecast: those of the state for comparison are asked for with every frame."""
@@ -77,13 +80,13 @@ _MEASURING: Final = 0.8
 """The share of the work that measuring takes, and not writing, where it is shown what matters."""
 
 _POINTS: Final = 2_000
+"""Accepted trials that a scatter shows."""
+
 _MATRIX: Final = 6
 """Forecasts in a matrix of scatters: all pairs of more would be too small to be read."""
 _MATRIX_POINTS: Final = 300
 _RANKED: Final = 1 << 16
 """Trials that a matrix looks at: each rank correlation sorts them."""
-"""Accepted trials that a scatter shows."""
-
 
 Bases = Mapping[str, float | None]
 """Forecast -> its base case; None where that is no number."""
@@ -116,6 +119,7 @@ def frame_of(
             charts[name] = _shares(figure, None if behind is None else behind.results.get(name))
         elif figure is not None:
             payload = forecast_payload(simulation, figure, most, fits=fits)
+            payload["bins"]["parts"] = figure.bins.in_parts(simulation.results[name].sample, _PARTS).tolist()
             charts[name] = payload | _beside(figure, simulation.results[name], behind)
     return {
         "trials": simulation.evaluated,

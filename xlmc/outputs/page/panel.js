@@ -30,10 +30,7 @@ class Panel {
         this.draw();
       });
     }
-    this.find(".together").addEventListener("change", ({ target }) => {
-      this.bins = merged(this.bars, Number(target.value));
-      this.draw();
-    });
+    this.listenToBars();
     this.find(".percentiles").addEventListener("change", () => this.markPercentiles());
     for (const box of element.querySelectorAll(".line")) {
       box.addEventListener("change", () => {
@@ -49,6 +46,14 @@ class Panel {
     new ResizeObserver(() => {
       if (this.chart.width !== widthOf(this.find(".chart"))) this.draw();
     }).observe(this.find(".chart"));
+  }
+
+  /** Some bars can be drawn as one. */
+  listenToBars() {
+    this.find(".together").addEventListener("change", ({ target }) => {
+      this.bins = merged(this.bars, Number(target.value));
+      this.draw();
+    });
   }
 
   /** A distribution fitted to the trials is drawn where one is chosen. */
@@ -246,8 +251,9 @@ class Panel {
     const unit = units ? ` ${units}` : "";
     if (this.state.view === "frequency") {
       const i = Math.min(Math.max(lastUpTo(bins.edges, value), 0), bins.counts.length - 1);
-      const [from, to] = [bins.edges[i], bins.edges[i + 1]].map((edge) => this.written(edge, bins.decimals));
-      const bar = bins.whole && !bins.numbers ? this.written(bins.edges[i] + 0.5, 0) : `${from} to below ${to}`;
+      const inside = bins.whole ? 0.5 : 0; // the bars of whole numbers begin between two of them
+      const [from, to] = [bins.edges[i] + inside, bins.edges[i + 1] - inside].map((edge) => this.written(edge, bins.decimals));
+      const bar = from === to ? from : `${from} to ${bins.whole ? "" : "below "}${to}`;
       const percent = styled(((100 * bins.counts[i]) / trials).toFixed(2));
       return `${bar}${unit}: ${countText(bins.counts[i])} trials, ${percent} %`;
     }

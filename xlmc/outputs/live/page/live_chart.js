@@ -1,7 +1,7 @@
 "use strict";
 // A forecast's chart that is brought up to date without being made anew, with the state that is compared behind it.
 
-const BEHIND = "#6B4F9E";
+const BEHIND = "#6B4F9E", MOST_DRAWN = 500;
 
 /** The elements of one forecast; `Panel` of the page of results works on them. */
 function forecastElement({ name, units, marks }, number) {
@@ -12,12 +12,12 @@ function forecastElement({ name, units, marks }, number) {
   const box = (label, key, unit) => make("label", {}, make("span", { text: label }),
     make("input", { type: "text", inputmode: "text", autocomplete: "off", spellcheck: "false", class: key }),
     make("span", { class: "unit", text: unit }));
-  const together = make("select", { class: "together" },
-    ...[[1, "each"], [2, "two as one"], [4, "four as one"]].map(([value, text]) => make("option", { value, text })));
+  const count = make("input", { type: "text", inputmode: "numeric", autocomplete: "off", class: "bar-count", size: 4,
+    "aria-label": `Number of bars of ${name}`, title: "Blank: as many as suit the trials" });
   const views = make("div", { class: "views-and-bars" },
     make("fieldset", { class: "views" }, make("legend", { text: "Chart" }), view("frequency", "Frequency"),
       view("cumulative", "Cumulative"), view("reverse", "Reverse cumulative")),
-    make("p", { class: "choices" }, make("label", {}, "Bars ", together),
+    make("p", { class: "choices" }, make("label", {}, "Bars ", count, " ", make("output", { class: "bars-drawn" })),
       make("button", { type: "button", class: "zoom", "aria-pressed": "false", text: "Zoom to the range",
         "aria-label": `Zoom to the range of ${name}` }),
       ...lines.map((label) => make("label", {}, make("input", { type: "checkbox", class: "line", value: label, checked: true }),
@@ -64,6 +64,15 @@ function sharesElement({ name, shares }) {
 
 class LivePanel extends Panel {
   static behind = "";
+  /** How many bars of a forecast were asked for; null for as many as suit the trials. */
+  static bars = {
+    place: (name) => `bars ${location.pathname} ${name}`,
+    of: (name) => Number(sessionStorage.getItem(LivePanel.bars.place(name))) || null,
+    keep: (name, count) => {
+      if (count === null) sessionStorage.removeItem(LivePanel.bars.place(name));
+      else sessionStorage.setItem(LivePanel.bars.place(name), String(count));
+    },
+  };
   /** @type {(...given: any[]) => void} tells the server how a forecast is stated: name, key and value */
   static set = () => {};
   /** @type {(name: string) => void} that it is stated as in the workbook */
@@ -72,17 +81,43 @@ class LivePanel extends Panel {
   constructor(element, forecast, z) {
     super(element, forecast, z);
     this.article = element;
+    this.find(".bar-count").value = String(LivePanel.bars.of(forecast.name) ?? "");
+    this.divide();
+    if (this.bins !== this.bars) this.draw();
     this.find(".chart").addEventListener("svg", () => saveSvg(this.chart, this.find(".chart")));
     this.tell();
   }
 
   listen(element) {
     super.listen(element);
-    this.find(".together").addEventListener("change", ({ target }) => { this.together = Number(target.value); });
     this.find(".zoom").addEventListener("click", () => this.toggleZoom());
     this.find(".above").addEventListener("change", () => this.typeThreshold());
     this.find(".central").addEventListener("change", () => this.typeCentral());
     this.find(".back").addEventListener("click", () => LivePanel.back(this.forecast.name));
+  }
+
+  /** How many bars are drawn can be typed, and is kept until the tab is closed. */
+  listenToBars() {
+    const box = this.find(".bar-count");
+    box.addEventListener("change", () => {
+      const wanted = box.value.trim() ? typed(box.value, null) : null;
+      const wrong = box.value.trim() !== "" && !(Number.isInteger(wanted) && wanted >= 1 && wanted <= MOST_DRAWN);
+      box.toggleAttribute("aria-invalid", wrong);
+      this.find(".fault").textContent = wrong ? `Type a whole number of bars, from 1 to ${countText(MOST_DRAWN)}.` : "";
+      if (wrong) return;
+      LivePanel.bars.keep(this.forecast.name, wanted);
+      this.divide();
+      this.draw();
+    });
+  }
+
+  /** Take as many bars as were asked for, or nearly: they hold equal numbers of the parts that were counted. */
+  divide() {
+    const wanted = LivePanel.bars.of(this.forecast.name);
+    this.bins = divided(this.bars, wanted);
+    const drawn = this.bins.counts.length;
+    this.find(".bar-count").placeholder = String(this.bars.counts.length);
+    this.find(".bars-drawn").textContent = wanted !== null && drawn !== wanted ? `(${countText(drawn)} drawn)` : "";
   }
 
   /** How the forecast is stated now; what is being typed stays. */
@@ -147,7 +182,7 @@ class LivePanel extends Panel {
     this.forecast = forecast;
     this.trials = new Trials(forecast);
     this.own = this.bars = barsOf(forecast);
-    this.bins = merged(this.bars, this.together ?? 1);
+    this.divide();
     this.step = stepOf(this.bins);
     this.decimals = Math.max(0, -Math.round(Math.log10(this.step)));
     this.percentiles = this.percentiles.map(({ label }) => this.percentile(parseFloat(label)));
@@ -288,6 +323,27 @@ class LivePanel extends Panel {
   legend() {
     return `${super.legend()}${this.forecast.behind ? "    violet line: the state for comparison" : ""}`;
   }
+}
+
+/** The bars made of other numbers of the equal parts of all bars, so that there are about so many; the last may be of fewer. */
+function divided(bars, wanted) {
+  if (wanted === null) return bars;
+  const parts = bars.parts.flat();
+  const each = parts.length / bars.counts.length;
+  const together = Math.max(1, Math.round(parts.length / wanted));
+  const width = (bars.width * together) / each;
+  const starts = [...parts.keys()].filter((i) => i % together === 0);
+  return {
+    ...bars,
+    edges: [...starts.map((i) => bars.edges[Math.floor(i / each)] + (bars.width * (i % each)) / each), bars.edges.at(-1)],
+    counts: starts.map((i) => parts.slice(i, i + together).reduce((sum, count) => sum + count, 0)),
+    decimals: [0, 1, 2].map((more) => bars.decimals + more).find((d) => isWhole(width * 10 ** d)) ?? bars.decimals + 2,
+    numbers: together / each,
+  };
+}
+
+function isWhole(number) {
+  return Math.abs(number - Math.round(number)) < 1e-9 * Math.max(1, number);
 }
 
 /** Where a chart begins and ends that shows a range, which may be open or very narrow. */

@@ -25,6 +25,8 @@ CSV = (".csv", ".tsv", ".txt")
 
 _BLANK = ("", "na", "n/a", "nan", "null", "-")
 
+_OTHER_HEADING = "Give each column a heading of its own"
+
 
 def fit_columns(
     columns: Mapping[str, Sequence[float | str | None]],
@@ -122,7 +124,8 @@ def columns_of_csv(path: Path, wanted: str | None) -> dict[str, list[float | str
         wanted: headings joined by commas, `*` for any letters; all where None.
 
     Raises:
-        WorkbookError: the file cannot be read, or a line has more cells than there are headings.
+        WorkbookError: the file cannot be read, a line has more cells than there are headings, a column with values has
+            no heading, or two have the same.
         SimulationError: there is no column of a heading.
     """
     from xlmc.errors import WorkbookError
@@ -136,12 +139,22 @@ def columns_of_csv(path: Path, wanted: str | None) -> dict[str, list[float | str
         if len(cells) > len(heads):
             message = f"line {number} has {len(cells)} cells, and there are {len(heads)} headings"
             raise WorkbookError(message, where=path, hint="Put texts with commas in quotation marks")
-    texts = {
-        head: [(cells[at].strip() if at < len(cells) else "") for _, cells in lines[1:]]
-        for at, head in enumerate(heads)
-        if head
-    }
-    return _wanted({head: _typed(cells, comma=mark == ";") for head, cells in texts.items()}, wanted)
+    found: dict[str, list[float | str | None]] = {}
+    for at, head in enumerate(heads):
+        texts = [cells[at].strip() if at < len(cells) else "" for _, cells in lines[1:]]
+        typed = _typed(texts, comma=mark == ";")
+        if fault := _fault_of_heading(head, typed, found):
+            raise WorkbookError(f"column {at + 1} of the file: {fault}", where=path, hint=_OTHER_HEADING)
+        if head:
+            found[head] = typed
+    return _wanted(found, wanted)
+
+
+def _fault_of_heading(head: str, cells: Sequence[float | str | None], others: Mapping[str, object]) -> str:
+    """Say what is wrong with the heading of a column; the columns before it have others. A blank column needs none."""
+    if head in others:
+        return f"another column has the heading {head!r}, too"
+    return "" if head or all(each is None for each in cells) else "the column has no heading"
 
 
 def _typed(cells: Sequence[str], *, comma: bool) -> list[float | str | None]:
@@ -159,10 +172,11 @@ def columns_of_range(
     """Read the columns of a range whose first row has their headings, or of a table; and where they stand.
 
     Raises:
-        DefinitionError: there is no such range, it has a single row, or a cell holds an error.
+        DefinitionError: there is no such range, it has a single row, a cell holds an error, a column with values has no
+            heading, or two have the same.
     """
     from xlmc.cli.printing import use_number_style
-    from xlmc.errors import DefinitionError
+    from xlmc.errors import DefinitionError, ErrorCode
     from xlmc.excel.address import Cell
     from xlmc.excel.workbook.reader import read_workbook
     from xlmc.montecarlo.definitions.cell_references import area_of_reference
@@ -181,24 +195,17 @@ def columns_of_range(
         cells: list[float | str | None] = []
         for row in range(area.top + 1, area.bottom + 1):
             value = workbook.content(Cell(area.sheet, row, column)).value
-            if value is None or value == "":
-                cells.append(None)
-            elif isinstance(value, bool):
-                cells.append(str(value).upper())
-            elif isinstance(value, int | float):
-                cells.append(float(value))
-            elif isinstance(value, str):
-                cells.append(value.strip() or None)
+            if isinstance(value, ErrorCode):
+                where, hint = Cell(area.sheet, row, column), "Correct it, or leave its row out"
+                raise DefinitionError(f"the cell holds {as_text(value)}", where=where, hint=hint)
+            if isinstance(value, str | None):
+                cells.append((value or "").strip() or None)
             else:
-                hint = "Correct it, or leave its row out"
-                raise DefinitionError(
-                    f"the cell holds {as_text(value)}", where=Cell(area.sheet, row, column), hint=hint
-                )
+                cells.append(str(value).upper() if isinstance(value, bool) else float(value))
+        if fault := _fault_of_heading(head, cells, found):
+            raise DefinitionError(fault, where=Cell(area.sheet, area.top, column), hint=_OTHER_HEADING)
         if head:
             found[head] = cells
-        elif any(each is not None for each in cells):
-            where = Cell(area.sheet, area.top, column)
-            raise DefinitionError("the column has no heading", where=where, hint="Type one into this cell")
     return _wanted(found, wanted), f"{book.name} {area}"
 
 

@@ -359,9 +359,7 @@ class Member:
 
 def point_where(degenerate: Any, value: Values) -> Values | None:
     """Return the value where the parameters leave one only, NaN elsewhere; None if they never do."""
-    if not np.any(degenerate):
-        return None
-    return value if np.ndim(degenerate) == np.ndim(value) == 0 else np.where(degenerate, value, np.nan)
+    return np.where(degenerate, value, np.nan) if np.any(degenerate) else None
 
 
 def _open(family: Family, u: Array) -> Array:

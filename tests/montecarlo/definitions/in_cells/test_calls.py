@@ -376,6 +376,7 @@ REFUSED = {
     "RiskSplice(1,2)": "the function RiskSplice is not supported",
     "CB.Bang(1)": "the function CB.BANG is not supported",
     "RiskTruncate(1,2)": "the function RISKTRUNCATE is not supported",
+    "RiskNormal(RAND(),1)+RiskTruncate(1,2)": "the function RISKTRUNCATE is not supported",
     "RiskNormal(1)": "RiskNormal has 1 arguments",
     "RiskNormal(,1)": "RiskNormal leaves out its argument 'mean'",
     "CB.Normal(1,2,3,4,5,6)": "CB.Normal has 6 arguments",

@@ -192,8 +192,9 @@ def spearman_of(run, first, second):
         ({"L1": 0.2}, ["S!K2 is 0.9, and S!L1 is 0.2"]),
         ({"L1": "0.9"}, ["S!K2 is 0.9, and S!L1 is '0.9'"]),
         ({"L1": "=K2", "M1": 0, "M2": -0.9}, ["S!L3 is 0.9, and S!M2 is -0.9"]),
+        ({"L1": "#N/A"}, ["S!K2 is 0.9, and S!L1 is '#N/A'"]),
     ],
-    ids=["alike", "another number", "a text", "one of two"],
+    ids=["alike", "another number", "a text", "one of two", "an error"],
 )
 def test_halves_that_contradict_each_other_are_told_and_the_lower_one_holds(model, above, expected):
     made = model({**MATRIX, **above})

@@ -19,7 +19,7 @@ from itertools import combinations, pairwise
 from types import NoneType
 from typing import Final
 
-from xlmc.errors import DefinitionError
+from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.excel.address import Area, Cell
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Copula, Correlation, Parameter
@@ -27,7 +27,7 @@ from xlmc.montecarlo.definitions.in_cells.adjustment_weights import weight_of, w
 from xlmc.montecarlo.definitions.in_cells.call_draws import MatrixRow
 from xlmc.montecarlo.definitions.in_cells.reading import CellDraw
 from xlmc.montecarlo.definitions.problems import Findings
-from xlmc.montecarlo.definitions.tables.table_rows import number_in
+from xlmc.montecarlo.definitions.tables.table_rows import as_text, number_in
 from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import plain
 from xlmc.montecarlo.number_text import number_text
@@ -117,14 +117,18 @@ def _compare_halves(workbook: Workbook, area: Area, used: Cell, findings: Findin
     number, other = (workbook.content(cell).value for cell in (used, across))
     if not isinstance(number, int | float) or isinstance(other, bool | NoneType) or workbook.content(across).is_blank:
         return
-    if not isinstance(other, int | float) or not math.isclose(number, other, rel_tol=1e-12, abs_tol=1e-12):
-        shown = show(other) if isinstance(other, int | float) else repr(str(other))
-        findings.notice(
-            f"the halves of the matrix {area} contradict each other: "
-            f"{used} is {show(number)}, and {across} is {shown}; "
-            f"{used}, below the diagonal, is used. Make them equal, or clear one of them",
-            across,
-        )
+    if isinstance(other, int | float) and not isinstance(other, ErrorCode):
+        if math.isclose(number, other, rel_tol=1e-12, abs_tol=1e-12):
+            return
+        shown = show(other)
+    else:
+        shown = repr(as_text(other))
+    findings.notice(
+        f"the halves of the matrix {area} contradict each other: "
+        f"{used} is {show(number)}, and {across} is {shown}; "
+        f"{used}, below the diagonal, is used. Make them equal, or clear one of them",
+        across,
+    )
 
 
 def _correlation(workbook: Workbook, weights: Mapping[Area, Area], first: _Row, second: _Row) -> Correlation:

@@ -54,7 +54,7 @@ def _order_by_importance(model: CompiledModel, seed: int) -> tuple[str, ...]:
     blocks = [runner.run(Task(start, min(block, PILOT_TRIALS - start), prior=True)) for start in starts]
     accepted, forecasts = _joined([each.draws for each in blocks]), _columns(blocks)
     scores = {
-        name: round(_score(draws, accepted.get(name, np.empty(0)), forecasts), _DECIMALS)
+        name: round(_score(draws, accepted[name], forecasts), _DECIMALS)
         for name, draws in _joined([each.prior or {} for each in blocks]).items()
     }
     return tuple(sorted(model.draws, key=lambda name: (name in chances, -scores[name])))

@@ -158,10 +158,7 @@ def limit_trials(simulation: RunResult, most: int, forecasts: Sequence[int]) -> 
     now = _look_at_accepted(simulation, cells, m)
     constant = [bool(np.all(bound == bound[0])) for bound in now.bounds]
     fixed_limits = [i for i, fixed in enumerate(constant) if fixed]
-    grids = {
-        i: grid(cells.limits[i].relation, float(now.bounds[i][0]), now.filters[cells.limits[i].filter_index])
-        for i in fixed_limits[:most]
-    }
+    grids = {i: grid(float(now.bounds[i][0]), now.filters[cells.limits[i].filter_index]) for i in fixed_limits[:most]}
     reached = simulation.trials if m == simulation.accepted else int(simulation.trial_index[m])
     names = [simulation.model.forecasts[number].name for number in forecasts]
     again = min(reached, _MOST_AGAIN, max(LEAST_AGAIN, simulation.trials // 4))

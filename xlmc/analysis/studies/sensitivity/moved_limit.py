@@ -75,7 +75,7 @@ def holds_to(relation: str, values: Floats, limit: float | Floats) -> Bools:
     return np.asarray(compare(values, limit))
 
 
-def grid(relation: str, limit: float, values: Floats) -> tuple[float, ...]:
+def grid(limit: float, values: Floats) -> tuple[float, ...]:
     """Limits to try, ascending, in round steps about the limit as it is; none where the accepted values tell no step.
 
     Up to half of the accepted trials are cut off by `_STEPS` steps on the tight side.

@@ -9,10 +9,12 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mpf
 
+from xlmc.engine.graph.nodes import Apply, Input
 from xlmc.engine.passes.random_rounding import (
     RandomRounding,
     closure,
     evaluate,
+    evaluate_changes,
     numbers_of,
     open_constants,
     term_sizes,
@@ -107,6 +109,29 @@ def test_values_that_nothing_reads_any_more_are_dropped(needed):
         numbers_of(found[node], 50).tobytes()
         == numbers_of(evaluate(dag, nodes, {"x": x}, RandomRounding(3))[node], 50).tobytes()
     )
+
+
+@pytest.mark.parametrize(
+    ("changed", "expected", "count"),
+    [
+        ({"sum": 10.0}, 30.0, 3),  # the sum, the product, the result: no logarithm
+        ({"x": 4.0}, 18.0 + np.log(4.0), 5),
+        ({"x": 4.0, "sum": 10.0}, 30.0 + np.log(4.0), 5),
+    ],
+)
+def test_what_depends_on_another_value_changes_and_nothing_else(needed, changed, expected, count):
+    """(A1 + 2)·3 + LN(A1), where A1 is 1 and the sum 3."""
+    dag, nodes, node = needed("=(A1+2)*3+LN(A1)")
+    values = evaluate(dag, nodes, {"x": np.array([1.0])})
+    places = {
+        "x": next(n for n in nodes if isinstance(dag.nodes[n], Input)),
+        "sum": next(n for n in nodes if isinstance(dag.nodes[n], Apply) and values[n].numbers[0] == 3.0),
+    }
+    given_values = {places[name]: Value.of_numbers(np.array([value])) for name, value in changed.items()}
+    found = evaluate_changes(dag, nodes, values, given_values)
+    assert found[node].numbers[0] == pytest.approx(expected)
+    assert len(found) == count
+    assert all(found[n] is each for n, each in given_values.items())
 
 
 def test_arrays_of_constants_are_moved_once_and_numbers_in_each_trial():

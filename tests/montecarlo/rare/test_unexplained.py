@@ -216,6 +216,10 @@ ACCOUNT = RareAccount(
     plain=1_000_000,
     plain_accepted=2,
     checked=65_536,
+    missed=0.0,
+    ways=1,
+    explored=0.0,
+    solved=(),
 )
 
 

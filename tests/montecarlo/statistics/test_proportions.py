@@ -156,6 +156,28 @@ def test_a_narrow_replicated_interval_is_students():
     assert estimate.interval == pytest.approx((estimate.value - half, estimate.value + half), rel=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("more", "end"),
+    [(0, 0), (0, 1), (1, 1), (19, 0)],
+    ids=["all agree, below", "all agree, above", "one has a hit more", "one has a hit less"],
+)
+def test_replicates_that_differ_by_one_hit_have_a_binomial_interval(more, end):
+    """20 replicates of 100 trials with 24 hits, or with 25: how many have 25 is a binomial number."""
+    hits = np.full(20, 24.0)
+    hits[:more] += 1.0
+    found = replicated_proportion(hits, np.full(20, 100.0), method="clopper-pearson").interval
+    ends = stats.binomtest(more, 20).proportion_ci(0.95, method="exact")
+    share_of_more = -ends.high if more == end == 0 else ends[end]
+    assert found[end] == pytest.approx((24.0 + share_of_more) / 100.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("hits", [[24.0, 26.0] * 10, [24.0] * 19 + [26.0], [23.0] + [24.0] * 18 + [25.0]])
+def test_replicates_that_differ_by_more_have_the_interval_of_their_spread(hits):
+    found = replicated_proportion(hits, np.full(20, 100.0), method="clopper-pearson")
+    half = stats.t.ppf(0.975, 19) * np.std(hits, ddof=1) / 100.0 / math.sqrt(20)
+    assert found.interval[1] - found.interval[0] == pytest.approx(2.0 * half, rel=0.05)
+
+
 def test_replicates_that_all_agree_still_leave_an_error():
     estimate = replicated_proportion([24, 24, 24], [100, 100, 100])
     assert estimate.error == proportion(0, 300).error > 0

@@ -44,7 +44,6 @@ class RareAccount:
         components, directions: of the mixture of normal distributions that was learned.
         dimensions: assumptions that are drawn.
         lost: of all but the plain trials, those in which a filter or a draw is an error.
-        faulty: of the kept ones, those in which a forecast is an error.
         plain: of the evaluations, plain trials before the search.
         plain_accepted: of those, by the filters.
         checked: of the evaluations, those from widened assumptions after the search, to look for what it missed.
@@ -53,6 +52,7 @@ class RareAccount:
         ways: the number of strata: parts of all trials, by branches and discrete assumptions, searched apart.
         explored: the probability of parts that splitting did not find, and that other accepted trials led to.
         solved: the assumptions that thin layers were solved for.
+        faulty: of the kept ones, those in which a forecast is an error; known when the run has evaluated them.
     """
 
     evaluations: int
@@ -70,14 +70,14 @@ class RareAccount:
     directions: int
     dimensions: int
     lost: int
+    plain: int
+    plain_accepted: int
+    checked: int
+    missed: float
+    ways: int
+    explored: float
+    solved: tuple[str, ...]
     faulty: int = 0
-    plain: int = 0
-    plain_accepted: int = 0
-    checked: int = 0
-    missed: float = 0.0
-    ways: int = 1
-    explored: float = 0.0
-    solved: tuple[str, ...] = ()
 
     @property
     def at_least(self) -> bool:

@@ -68,6 +68,13 @@ def test_a_defined_name_is_read_as_a_table(found, text, places):
     assert found_places.get("xlmc_forecasts", []) == places
 
 
+def test_headings_of_a_plain_range_are_found_in_their_columns(make_book):
+    cells = {"xlmc_filters!B2": "Name", "xlmc_filters!C2": "At Least", "xlmc_filters!B3": "x"}
+    (table,) = definition_tables(make_book(cells), Findings())["xlmc_filters"]
+    assert table.columns == {"name": ("Name", 2), "atleast": ("At Least", 3)}
+    assert (str(table.where), str(table.heading_cell(3))) == ("xlmc_filters!B2", "xlmc_filters!C2")
+
+
 def test_no_range_is_read_beside_a_table_of_its_kind(found):
     cells = {"xlmc_filters!A1": "Name", "xlmc_filters!A2": "x", "S!A1": "Name", "S!A2": "x"}
     places, findings = found(cells, [("xlmc_filters2", "S!A1:A2")])

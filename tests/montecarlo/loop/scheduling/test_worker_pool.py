@@ -47,6 +47,7 @@ def chosen(monkeypatch):
         (WorkerPool(4), 101, "numpy", ("threads", 1, 2)),
         (WorkerPool(4), 12_700, "numpy", ("threads", 3, 127)),
         (WorkerPool(4), 12_701, "numpy", ("processes", 3, 128)),
+        (WorkerPool(2), 12_701, "numpy", ("processes", 1, 128)),
         (WorkerPool(1), 12_800, "numpy", "this thread"),
         (WorkerPool(4, "threads"), 12_800, "numpy", ("threads", 3, 128)),
         (WorkerPool(4, "processes"), 200, "numpy", ("processes", 1, 2)),

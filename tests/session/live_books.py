@@ -212,6 +212,41 @@ def book_of_decisions(path, trials=2_000):
     return path
 
 
+def book_with_decisions(path, *, high=1.5, listed=False, more=()):
+    """A workbook of two assumptions and two decisions, which formulas read, and of what else is given."""
+    book = openpyxl.Workbook()
+    model, sheet = book.active, book.create_sheet("T")
+    model.title = "M"
+    cells = {"A1": 1.0, "A2": 0.7, "A3": 50.0, "A4": 3, "B1": "=A3*A1+A4^2", "B2": "=IF(A3>55,A2*A3,A1/A4)"}
+    for cell, content in {**cells, **dict(more)}.items():
+        model[cell] = content
+    tables = {
+        "xlmc_assumptions": [
+            ["Name", "Cell", "Distribution", "Low", "High", "Frozen"],
+            ["u", "=M!A1", "Uniform", 0.5, high, None],
+            ["v", "=M!A2", "Uniform", 0.6, 0.8, None],
+        ],
+        "xlmc_forecasts": [["Name", "Cell"], ["sum", "=M!B1"], ["way", "=M!B2"]],
+        "xlmc_filters": [["Name", "Cell", "At most", "Use"], ["possible", "=M!B1", "=M!A3*1.3", None]],
+        "xlmc_decisions": [
+            ["Name", "Cell", "Low", "High", "Step", "Values"],
+            ["limit", "=M!A3", 30.0, 70.0, 10.0, None],
+            ["lanes", "=M!A4", None, None, None, "2; 3; 4"],
+            *([["road", "=M!C1", None, None, None, "dry; wet"]] if listed else []),
+        ],
+    }
+    top = 1
+    for name, lines in tables.items():
+        for row, line in enumerate(lines, start=top):
+            for column, content in enumerate(line, start=1):
+                sheet.cell(row, column, content)
+        bottom = top + len(lines) - 1
+        sheet.add_table(Table(displayName=name, ref=f"A{top}:{chr(64 + len(lines[0]))}{bottom}"))
+        top = bottom + 2
+    book.save(path)
+    return path
+
+
 def with_column(path, target, heading):
     """The workbook with one more column in its table of assumptions."""
     book = openpyxl.load_workbook(path)

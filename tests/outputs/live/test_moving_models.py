@@ -6,7 +6,7 @@ import random
 from dataclasses import replace
 
 import pytest
-from live_books import CASE, change, settle, wide_book
+from live_books import CASE, book_with_decisions, change, settle, wide_book
 
 from xlmc.errors import XlmcError
 from xlmc.excel.workbook.injection.cell_edit import with_contents
@@ -74,6 +74,47 @@ def test_while_it_moves_a_held_assumption_needs_no_other_formulas(case):
 
 def case_base(model):
     return next(each.base for each in model.assumptions if each.name == FRICTION)
+
+
+DECIDED = (
+    Adjustments().having("decision", "limit", "value", 40.0),
+    Adjustments().having("decision", "limit", "value", 60.0),
+    Adjustments().having("decision", "limit", "value", 60.0).having("assumption", "v", "high", 0.75),
+    Adjustments().having("decision", "lanes", "value", 2.0).having("filter", "possible", "used", value=False),
+    Adjustments().having("assumption", "v", "high", 0.75),
+    Adjustments().having("decision", "lanes", "value", 4.0).having("assumption", "u", "frozen", value=True),
+    Adjustments().having("decision", "limit", "value", 70.0).having("decision", "lanes", "value", 2.0),
+)
+
+
+DECISIONS = {
+    "formulas alone read them": ({}, True),
+    "a parameter reads one": ({"high": "=M!A3/30"}, False),
+    "one is a text": ({"listed": True, "more": {"C1": "dry"}}, False),
+    "one says which cell is read": ({"more": {"B1": "=A3*A1+A4^2+SUM(OFFSET(A1,0,0,A4,1))"}}, False),
+    "much depends on them alone": (
+        {"more": {f"D{n}": f"=SIN(A3*{n})/99" for n in range(1, 99)} | {"B1": "=A3*A1+SUM(D1:D98)"}},
+        False,
+    ),
+}
+
+
+@pytest.mark.parametrize(("given", "shared"), DECISIONS.values(), ids=DECISIONS)
+def test_while_decisions_move_the_numbers_are_those_of_the_edited_workbook(tmp_path, given, shared):
+    own = load(book_with_decisions(tmp_path / "case.xlsx", **given))
+    known, nodes = KnownModels(own, TRIALS), set()
+    for adjustments in DECIDED:
+        moving = known.moving(adjustments)
+        found = simulate(moving.model, trials=TRIALS, sampling="mc", own_runner=moving.runner(1_024))
+        expected = simulate(edited(own, changes_of(own.definitions, adjustments)), trials=TRIALS, sampling="mc")
+        assert found.trial_index.tobytes() == expected.trial_index.tobytes(), adjustments
+        for name, values in expected.forecasts.items():
+            assert found.forecasts[name].tobytes() == values.tobytes(), (name, adjustments)
+        base = KnownModels(own, TRIALS)._with_typed(adjustments.typed_part()).moving(adjustments.untyped_part()).base
+        assert moving.base == base
+        if adjustments.decisions and not adjustments.filters:
+            nodes.add(id(moving.model.lowering))
+    assert (len(nodes) == 1) == shared
 
 
 def test_models_with_the_same_assumptions_held_share_their_nodes(case):

@@ -15,6 +15,7 @@ from live_books import (
     CASE,
     book_of_decisions,
     book_of_readings,
+    book_with_decisions,
     change,
     edited,
     rows_of,
@@ -891,15 +892,29 @@ def test_a_scenario_of_the_workbook_that_decides_is_shown(decided, tmp_path):
     )
 
 
-def test_draws_are_kept_for_one_state_of_decisions(decided, monkeypatch):
+def test_what_matters_does_not_tell_a_decision_as_an_assumption(tmp_path, monkeypatch):
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", 1_000)
+    session = Session(load(book_with_decisions(tmp_path / "case.xlsx")))
+    session.receive(PageMessage("view", seen(["sum", "way"], "matters")))
+    told = settle(session)
+    for sent in (change("limit", "value", 60.0, of="decision"), change("limit", "value", None, of="decision")):
+        session.receive(sent)
+        told += settle(session)
+    parts = [each for each in told if each["kind"] == "part"]
+    assert {each["version"] for each in parts} == {0, 1, 2}
+    assert not [each for each in parts if "decided" in each["html"]]
+
+
+@pytest.mark.parametrize("solves", [True, False])
+def test_draws_are_kept_for_one_state_of_decisions(decided, monkeypatch, tmp_path, solves):
     """So that memory is bounded whichever decision is moved."""
     monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", 1_000)
-    session = Session(decided[1])
+    session = Session(decided[1] if solves else load(book_with_decisions(tmp_path / "case.xlsx")))
     for value in (60.0, 40.0, None):
         session.receive(change("limit", "value", value, of="decision"))
         until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0)
         mine = session._models
-        typed = [] if mine._typed is None else [mine._typed[1]]
+        typed = [each for each in (mine._typed and mine._typed[1], mine._deciding) if each is not None]
         kept = [bool(runner._runners) for models in (mine, *typed) for runner in models._runners.values()]
         assert sum(kept) == 1
 

@@ -252,13 +252,17 @@ class CompiledModel:
         of_checks = {} if self._checks is None else dict(self._checks.graph.formulas)
         return of_checks | dict(self.needed.graph.formulas)
 
+    @property
+    def folds_nothing(self) -> bool:
+        """Whether no definition holds a number that was computed from cells when the workbook was read."""
+        return not self._folded and not self.definitions.rewritten
+
     def reads_elsewhere(self, cells: Collection[Cell]) -> bool:
         """Whether anything but the rows of tables may read one of these cells, which are of such rows."""
         if not cells:
             return False
         own, read = {a.cell for a in self.assumptions}, self.read
-        calls = bool(self.definitions.rewritten)  # whose arguments may be cells that were read as numbers
-        return calls or self._folded or any(cell in read and cell not in own for cell in cells)
+        return not self.folds_nothing or any(cell in read and cell not in own for cell in cells)
 
     @property
     def saved(self) -> frozenset[Cell]:

@@ -3,8 +3,9 @@
 A state at rest has the model that the edited workbook would have. It is made from one in which the same assumptions are
 held at the same values: in such a model a moved number needs no formula to be looked at again. A state that moves has
 what a `ReusingRunner` can run: an assumption that was frozen a moment ago is still drawn there, as a distribution with
-a single value. Decisions and cells that are solved for are typed into the workbook first; all else is then as in a
-workbook that was opened with these numbers.
+a single value, and so is the number that a decision takes, if nothing but formulas reads its cell. Other decisions, and
+cells that are solved for, are typed into the workbook first; all else is then as in a workbook that was opened with
+these numbers.
 """
 
 from __future__ import annotations
@@ -13,8 +14,10 @@ import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from importlib.util import find_spec
+from types import MappingProxyType
 from typing import Final
 
+from xlmc.engine.graph.nodes import Constant
 from xlmc.errors import XlmcError
 from xlmc.excel.formula import Graph
 from xlmc.montecarlo.definitions.definitions import Assumption, Definitions
@@ -36,6 +39,12 @@ _IN_SHAPES: Final = re.compile(r"\$?\b[A-Za-z]{1,3}\$?\d+\b|\d+(\.\d+)?")
 
 _KEPT: Final = 3
 """Sets of held assumptions whose models are kept."""
+
+_DECIDED: Final = "decided: "
+"""Before the name of a decision, where it is an assumption with a single value."""
+
+_MOST_MORE: Final = 2
+"""Nodes that a trial computes where decisions are assumptions, as a multiple of those of the workbook's model."""
 
 _State = tuple[tuple[str, bool, float | None], ...]
 """Each assumption that is held or drawn differently from the workbook: its name, whether it is held, and where. Each
@@ -82,6 +91,8 @@ class KnownModels:
         self._runners: dict[_State, ReusingRunner] = {}
         self._last: tuple[CompiledModel, Adjustments, CompiledModel] | None = None
         self._typed: tuple[Adjustments, KnownModels] | None = None
+        self._deciding: KnownModels | None = None
+        self._decides = _may_decide(own)
 
     def _with_typed(self, typed: Adjustments) -> KnownModels:
         """Return the models of the workbook with what is typed into its cells; those of the last one are kept.
@@ -92,9 +103,15 @@ class KnownModels:
         if self._typed is None or self._typed[0] != typed:
             own = applied(self.own, changes_of(self.own.definitions, typed))
             self._typed = typed, KnownModels(own, self._trials, self._most_bytes, self._seed)
-            for runner in self._runners.values():
-                runner.forget()
         return self._typed[1]
+
+    def _alone(self, known: KnownModels) -> KnownModels:
+        """Return the models that are run next; draws that the others keep are given back."""
+        for each in (self, self._deciding, None if self._typed is None else self._typed[1]):
+            if each is not None and each is not known:
+                for runner in each._runners.values():
+                    runner.forget()
+        return known
 
     def at_rest(self, adjustments: Adjustments) -> CompiledModel:
         """Return the model of a state.
@@ -123,20 +140,56 @@ class KnownModels:
             SimulationError: a filter or a forecast cannot be computed.
         """
         if typed := adjustments.typed_part():
-            return self._with_typed(typed).moving(adjustments.untyped_part())
+            found = self._decided(adjustments) if self._decides else None
+            return found or self._alone(self._with_typed(typed)).moving(adjustments.untyped_part())
         self._typed = None
+        self._alone(self)
         state = _state_of(self.own.definitions, adjustments)
-        numbers = adjustments.numbers(self.own.definitions)
-        still = _frozen_values(self.own, state)
-        if still is not None:
-            model = self._moved(self.own, numbers)
-            model = model.changed(model.workbook, _holding_still(model.definitions, still)) if still else model
-            reusing = self._runner_of((), self.own)
-            if reusing.holds_for(model):
-                return Moving(model, reusing)
+        if (found := self._held(adjustments, state)) is not None:
+            return found
         model = self.at_rest(adjustments)
         reusing = self._runner_of(state, self._holding.get(state, model))
         return Moving(model, reusing if reusing.holds_for(model) else self._new_runner(model))
+
+    def _held(
+        self, adjustments: Adjustments, state: _State, values: Mapping[str, float] = MappingProxyType({})
+    ) -> Moving | None:
+        """Return what runs a state in which some assumptions have a single value; None if more is to be changed.
+
+        Args:
+            adjustments: the state.
+            state: the part of it that says what is held, and where.
+            values: of further assumptions that have a single value.
+        """
+        still = _frozen_values(self.own, state)
+        if still is None:
+            return None
+        still = {**still, **values}
+        model = self._moved(self.own, adjustments.numbers(self.own.definitions))
+        model = model.changed(model.workbook, _holding_still(model.definitions, still)) if still else model
+        reusing = self._runner_of((), self.own)
+        return Moving(model, reusing) if reusing.holds_for(model) else None
+
+    def _decided(self, adjustments: Adjustments) -> Moving | None:
+        """Return what runs a state with other decisions, none of which need formulas to be looked at again.
+
+        None if a decision is no number that formulas alone read, or if this would take longer.
+        """
+        if self._deciding is None:
+            typed = self._with_typed(adjustments.typed_part()).own
+            model = _deciding(self.own) if _defines_the_same(self.own, typed) else None
+            if model is None:
+                self._decides = False
+                return None
+            self._deciding = KnownModels(model, self._trials, self._most_bytes, self._seed)
+        changed = {name: float(each["value"]) for name, each in adjustments.decisions.items() if each}
+        values = {
+            _DECIDED + each.name: changed.get(each.name, each.base)
+            for each in self.own.definitions.decisions
+            if each.base is not None
+        }
+        untyped, known = adjustments.untyped_part(), self._alone(self._deciding)
+        return known._held(untyped, _state_of(known.own.definitions, untyped), values)
 
     def _moved(self, model: CompiledModel, adjustments: Adjustments) -> CompiledModel:
         """Return the model with other numbers; a state is first run with few trials, then with more, then at rest."""
@@ -165,6 +218,49 @@ class KnownModels:
 
     def _new_runner(self, model: CompiledModel) -> ReusingRunner:
         return ReusingRunner(model, _engine(model), self._seed, self._trials, self._most_bytes)
+
+
+def _may_decide(own: CompiledModel) -> bool:
+    """Return whether all decisions are numbers in cells that nothing but formulas may read."""
+    definitions = own.definitions
+    cells = {each.cell for each in definitions.decisions}
+    taken = {each.cell for each in definitions.assumptions}
+    numbers = all(each.base is not None and not each.contents for each in definitions.decisions)
+    return bool(cells) and numbers and cells.isdisjoint(taken) and not definitions.solves and own.folds_nothing
+
+
+def _defines_the_same(own: CompiledModel, typed: CompiledModel) -> bool:
+    """Return whether two models differ in what decisions hold alone, and not in what was read from other cells."""
+    definitions, others = (replace(each.definitions, decisions=()) for each in (own, typed))
+    return definitions == others
+
+
+def _deciding(own: CompiledModel) -> CompiledModel | None:
+    """Return the workbook's model with its decisions as assumptions that have a single value.
+
+    None if a formula cannot be computed then, if the draws of others would depend on them, or if much would be computed
+    in each trial that is else computed once.
+    """
+    definitions = own.definitions
+    decided = tuple(
+        Assumption(
+            _DECIDED + each.name, each.cell, "Uniform", {"low": each.base, "high": each.base}, each.row, base=each.base
+        )
+        for each in definitions.decisions
+        if each.base is not None
+    )
+    with_decisions = replace(definitions, assumptions=(*definitions.assumptions, *decided), decisions=())
+    try:
+        found = type(own)(own.workbook, with_decisions, own.path)
+    except XlmcError:  # a formula that computes which cell it reads, say
+        return None
+    same = len(found.needed.stages) == len(own.needed.stages)
+    return found if same and _in_each_trial(found) <= _MOST_MORE * _in_each_trial(own) else None
+
+
+def _in_each_trial(model: CompiledModel) -> int:
+    """Count the nodes that a trial computes."""
+    return sum(not isinstance(node, Constant) for node in model.lowering.dag.nodes)
 
 
 def _engine(model: CompiledModel) -> str:

@@ -499,6 +499,7 @@ class Session:
                 and self._moving is not None
                 and self._sketch_seconds < _SKETCH
                 and not self._is_at_rest
+                and not self.adjustments.decisions  # which would be told as assumptions
             )
         if stage == "quick":
             return self._pace.is_slow and self.version not in (self._done.get("moving"), self._done.get("rest"))

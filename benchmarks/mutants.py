@@ -10,7 +10,7 @@ are any; then tests near by that import it, the folder that mirrors its own, and
 test fails or the processor time is up: that of pytest and its children, so that a busy machine decides nothing. In the
 end every test that killed a mutant is run without one: where it fails even so, it killed nothing. Survivors are printed
 with file, line and what was changed: some change nothing that anybody could see, and the others ask for a test. This
-takes a minute for a mutant at most, so it is no part of `.ci/run`.
+takes a minute for a mutant at most, so it is no part of `.ci/run`; Ctrl-C ends it with what is known by then.
 
 No mutants are made of what cannot change a result: annotations and names of types, decorators (`slots=True`, the size
 of a cache), bases and keywords of a class, functions without a body (`@overload`, protocols), what only type checkers
@@ -225,11 +225,14 @@ def main(given: Sequence[str] | None = None) -> None:
         copy = Path(folder, "copy")
         left_out = shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*_cache")
         shutil.copytree(ROOT, copy, ignore=left_out)
-        for number, mutant in enumerate(chosen, 1):
-            end, failed = fate(mutant, copy, asked.seconds)
-            ends.append((end, mutant, failed))
-            if end != "killed":
-                print(f"{number}: {end}: {mutant}", flush=True)
+        try:
+            for number, mutant in enumerate(chosen, 1):
+                end, failed = fate(mutant, copy, asked.seconds)
+                ends.append((end, mutant, failed))
+                if end != "killed":
+                    print(f"{number}: {end}: {mutant}", flush=True)
+        except KeyboardInterrupt:
+            print(f"ended after {len(ends)}", flush=True)
         killers = sorted(set().union(*(failed for _, _, failed in ends)))
         always = failures(killers, copy, 60.0 + 20.0 * len(killers)) if killers else set()
     counts: Counter[str] = Counter()
@@ -238,10 +241,10 @@ def main(given: Sequence[str] | None = None) -> None:
         counts["fails without it" if without else end] += 1
         if without:
             print(f"fails without it: {mutant}: {', '.join(failed)}", flush=True)
-    share = counts["killed"] / max(1, len(chosen))
-    error = (share * (1.0 - share) / max(1, len(chosen))) ** 0.5
+    share = counts["killed"] / max(1, len(ends))
+    error = (share * (1.0 - share) / max(1, len(ends))) ** 0.5
     rest = ", ".join(f"{count} {end}" for end, count in counts.items() if end != "killed") or "none left"
-    print(f"killed: {counts['killed']} of {len(chosen)}, {share:.1%} with a standard error of {error:.1%}; {rest}")
+    print(f"killed: {counts['killed']} of {len(ends)}, {share:.1%} with a standard error of {error:.1%}; {rest}")
 
 
 if __name__ == "__main__":

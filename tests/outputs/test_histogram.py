@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics.sample import Sample
-from xlmc.outputs.histogram import histogram
+from xlmc.outputs.histogram import histogram, not_drawn
 
 RANDOM = np.random.default_rng(7)
 MANY = st.lists(st.floats(-1e9, 1e9), min_size=1, max_size=60).map(np.array)
@@ -178,3 +178,9 @@ def test_parts_of_bins_are_equally_wide():
     edges = np.append((bins.edges[:, None] + np.arange(4) * bins.width / 4).ravel(), bins.upper_edges[-1])
     expected = [np.count_nonzero((values >= low) & (values < high)) for low, high in pairwise(edges)]
     assert found.ravel().tolist() == expected
+
+
+@pytest.mark.parametrize(("far", "said"), [(1, "0 trials below and 1 above"), (-1, "1 trial below and 0 above")])
+def test_what_is_not_drawn_is_said_with_its_noun(far, said):
+    bins = histogram(np.append(np.linspace(-1.0, 1.0, 999), 1e6 * far), 0.0, 1.0)
+    assert not_drawn(bins) == f" Not drawn: {said}."

@@ -441,7 +441,9 @@ class Figure:
         row, bins = self.answer, self.bins
         text = f"Figure {self.number}. {self.name}: {self.said}."
         if bins.counted < row.trials:
-            text += f" Trials are weighted: the chart shows {count_text(bins.counted)} trials of equal weight instead."
+            text += (
+                f" Trials are weighted: the chart shows {counted_text(bins.counted, 'trial')} of equal weight instead."
+            )
         if bins.below or bins.above:
             text += not_drawn(bins)
         return text
@@ -450,8 +452,8 @@ class Figure:
 def not_drawn(bins: Histogram) -> str:
     """How many trials a chart leaves out, as a sentence."""
     if bins.names is not None:
-        return f" Not drawn: {count_text(bins.above)} trials of rarer texts."
-    return f" Not drawn: {count_text(bins.below)} trials below and {count_text(bins.above)} above."
+        return f" Not drawn: {counted_text(bins.above, 'trial')} of rarer texts."
+    return f" Not drawn: {counted_text(bins.below, 'trial')} below and {count_text(bins.above)} above."
 
 
 def figures_of(simulation: RunResult, names: Collection[str] | None = None) -> list[Figure]:

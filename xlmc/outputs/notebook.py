@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.analysis.results.statements.in_words import distribution_text, limits_text
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.number_styles import in_style_of
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.outputs.document import further_sections
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import figures_of
@@ -73,7 +73,7 @@ def run_html(run: RunResult) -> str:
     return "".join(
         (
             f"<p><b>{escape(run.model.workbook.name)}</b>: accepted {count_text(run.accepted)} of "
-            f"{count_text(run.evaluated)} trials, "
+            f"{counted_text(run.evaluated, 'trial')}, "
             f"seed {run.settings.seed}</p>",
             *_sentences("Warning", (*changed, *run.warnings)),
             _table("Answers", headings, lines, set(range(1, len(headings))), pictures),

@@ -25,7 +25,7 @@ from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.keywords import forecast_named
-from xlmc.montecarlo.number_text import count_text, in_signs, signs, styled_text
+from xlmc.montecarlo.number_text import count_text, counted_text, in_signs, signs, styled_text
 from xlmc.montecarlo.statistics import rank_correlation
 from xlmc.outputs.document.axes_drawing import TITLE, draw_on, dress, short
 from xlmc.outputs.document.colours import DARK, INK, LIGHT
@@ -347,7 +347,7 @@ def _draw_histogram(axes: Axes, each: Drawn) -> None:
     if bins.below or bins.above:
         text = f"not drawn: {count_text(bins.below)} below, {count_text(bins.above)} above"
         if answer.categories:
-            text = f"not drawn: {count_text(bins.above)} trials of rarer texts"
+            text = f"not drawn: {counted_text(bins.above, 'trial')} of rarer texts"
         axes.annotate(text, (0.99, 0.95), xycoords="axes fraction", ha="right", va="top", fontsize=8)
     _dress(axes, each, edges)
 

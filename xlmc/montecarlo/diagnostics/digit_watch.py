@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from xlmc.engine.graph.nodes import Input
 from xlmc.engine.passes.random_rounding import RandomRounding, closure, evaluate, formula_of, numbers_of, term_sizes
 from xlmc.excel.functions.budget import TooLargeError
-from xlmc.montecarlo.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, counted_text, number_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
@@ -101,7 +101,7 @@ def _lost(
     dust = term_sizes(model.lowering.dag, needed, plain)
     sentences = [
         f"the digits of {name!r} cannot be trusted: rounding alone moves it by more than a thousandth of its central "
-        f"range in {count_text(int(np.count_nonzero(where)))} of {count_text(n)} accepted trials "
+        f"range in {count_text(int(np.count_nonzero(where)))} of {counted_text(n, 'accepted trial')} "
         f"(xlmc stability says where)"
         for name, where in lost.items()
         if _is_confirmed(model, nodes[name], draws, numbers_of(plain[nodes[name]], n), where, DUST * dust[nodes[name]])

@@ -6,7 +6,7 @@ import math
 from dataclasses import dataclass
 from typing import Final
 
-from xlmc.montecarlo.number_text import count_text, fixed_text, number_text
+from xlmc.montecarlo.number_text import count_text, counted_text, fixed_text, number_text
 from xlmc.montecarlo.statistics import Estimate, format_estimate
 
 __all__ = ["RareAccount", "probability_text"]
@@ -165,7 +165,8 @@ class RareAccount:
             )
         if self.implausible:
             found.append(
-                f"of {count_text(self.plain)} plain trials {count_text(self.plain_accepted)} were accepted, where "
+                f"of {counted_text(self.plain, 'plain trial')} {count_text(self.plain_accepted)} "
+                f"{'was' if self.plain_accepted == 1 else 'were'} accepted, where "
                 f"{number_text(self.plain * self.acceptance.value, 2)} were to be expected: the "
                 "probability of acceptance is at "
                 f"least {number_text(self.acceptance.value, 2)}, and part of the accepted region is missing"

@@ -115,7 +115,7 @@ class ChangedFrom:
 
 
 def _trials(count: int) -> str:
-    return "1 trial was" if count == 1 else f"{count_text(count)} trials were"
+    return f"{counted_text(count, 'trial')} {'was' if count == 1 else 'were'}"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -318,7 +318,8 @@ class RunResult:
         if self.error_trials > ERROR_SHARE * self.trials:
             share = self.error_trials / self.trials
             found.append(
-                f"{count_text(self.error_trials)} trials ({styled_text(share, '.2%')}) were lost to errors in cells"
+                f"{counted_text(self.error_trials, 'trial')} ({styled_text(share, '.2%')}) "
+                f"{'was' if self.error_trials == 1 else 'were'} lost to errors in cells"
             )
         failing = [warning for check in self.checks for warning in check.warnings]
         if self.agreement is not None and self.agreement.conflicts:
@@ -397,7 +398,7 @@ class RunResult:
         if not 0 < self.accepted < LEAST_ACCEPTED * groups:
             return []
         return [
-            f"only {count_text(self.accepted)} trials were accepted in "
+            f"only {_trials(self.accepted)} accepted in "
             f"{count_text(self.plan.replicates)} replicates, fewer than "
             f"{count_text(LEAST_ACCEPTED * groups)}, so errors and intervals are not to be trusted: "
             "run more trials, or sample "

@@ -22,7 +22,7 @@ from xlmc.excel.workbook.writer import write_workbook
 from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.model.loading import build_model
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import counted_text
 from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import ChangedFrom
 from xlmc.outputs import save
@@ -176,9 +176,10 @@ def write_changes(state: AtRest, book: Path, *, into: bool) -> str:
 
 def _summary(edited: EditedWorkbook) -> str:
     """Say how many cells were typed into, and what Excel must still do."""
-    count = len(edited.cells)
-    cells = f"{count} cells were typed into" if count > 1 else "1 cell was typed into"
-    formulas = f", {count_text(edited.computed)} formulas have new values" if edited.computed else ""
+    count, computed = len(edited.cells), edited.computed
+    cells = f"{counted_text(count, 'cell')} {'was' if count == 1 else 'were'} typed into"
+    values = "has a new value" if computed == 1 else "have new values"
+    formulas = f", {counted_text(computed, 'formula')} {values}" if computed else ""
     excel = "; Excel calculates the rest when it opens the file" if edited.calculates else ""
     sheets = "; its result sheets are those of the run before" if edited.has_results else ""
     return f"{cells}{formulas}{excel}{sheets}."

@@ -24,7 +24,7 @@ from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.definitions.tables.evidence_rows import check_sizes
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
 from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import counted_text
 from xlmc.montecarlo.sampling.draws import Draw
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics.estimate import finite, t_quantile
@@ -406,7 +406,7 @@ def run_row(model: CompiledModel, asked: RunOptions) -> dict[str, Any]:
 def _settings_text(model: CompiledModel) -> str:
     """Write the settings: `200,000 trials, Monte Carlo, seed 999`."""
     settings = model.definitions.settings
-    return f"{count_text(settings.trials)} trials, {METHODS[settings.sampling].name}, seed {settings.seed}"
+    return f"{counted_text(settings.trials, 'trial')}, {METHODS[settings.sampling].name}, seed {settings.seed}"
 
 
 def scenario_rows(definitions: Definitions, stored: Mapping[str, Adjustments]) -> Iterator[Message]:

@@ -23,7 +23,7 @@ from xlmc.excel.workbook.seal import sealed_text
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.writer import check_folder, write_workbook
 from xlmc.montecarlo.definitions.number_styles import in_style_of
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.outputs.document import further_sections
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import blocks_html
@@ -255,7 +255,7 @@ def _hashes(texts: list[str]) -> Iterator[str]:
 
 def _header(simulation: RunResult, parts: Mapping[str, str]) -> Html:
     run = (
-        f"{count_text(simulation.evaluated)} trials, {count_text(simulation.accepted)} accepted; "
+        f"{counted_text(simulation.evaluated, 'trial')}, {count_text(simulation.accepted)} accepted; "
         f"seed {simulation.settings.seed}"
     )
     links = (element("a", label, href=f"#{key}") for key, label in parts.items())

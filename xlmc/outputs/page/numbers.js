@@ -50,6 +50,11 @@ function countText(count) {
   return styled(Math.round(count).toString());
 }
 
+/** 1, "trial" -> "1 trial"; 3542, "trial" -> "3,542 trials". */
+function countedText(count, noun) {
+  return `${countText(count)} ${noun}${count === 1 ? "" : "s"}`;
+}
+
 /** A number with some decimals, or with a power of ten where it is very large or small. */
 function valueText(value, decimals) {
   if (value === Infinity) return "∞";

@@ -255,7 +255,7 @@ class Panel {
       const [from, to] = [bins.edges[i] + inside, bins.edges[i + 1] - inside].map((edge) => this.written(edge, bins.decimals));
       const bar = from === to ? from : `${from} to ${bins.whole ? "" : "below "}${to}`;
       const percent = styled(((100 * bins.counts[i]) / trials).toFixed(2));
-      return `${bar}${unit}: ${countText(bins.counts[i])} trials, ${percent} %`;
+      return `${bar}${unit}: ${countedText(bins.counts[i], "trial")}, ${percent} %`;
     }
     const reverse = this.state.view === "reverse";
     const { count } = reverse ? this.trials.between(value, Infinity) : this.trials.between(-Infinity, value);

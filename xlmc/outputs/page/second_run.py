@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from xlmc.analysis.results.statements.in_words import distribution_text, limits_text, status
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.distributions.spelling import name_key
-from xlmc.montecarlo.number_text import count_text, exact_text
+from xlmc.montecarlo.number_text import count_text, counted_text, exact_text
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import estimate_html, share_html
@@ -37,7 +37,7 @@ def second_run(first: RunResult, second: RunResult) -> Html:
     """Return the section that says what the second run is, and how its answers differ."""
     model, rows = second.model, summarise(first)
     said = (
-        f": {count_text(second.evaluated)} trials, {count_text(second.accepted)} accepted; seed "
+        f": {counted_text(second.evaluated, 'trial')}, {count_text(second.accepted)} accepted; seed "
         f"{second.settings.seed}. In each chart the "
         "dashed purple line is the second run, as if it had as many accepted trials as the first; its certainty stands "
         "below that of the first."

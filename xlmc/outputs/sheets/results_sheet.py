@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import counted_text
 from xlmc.outputs.document.content.answers import answer_tables, opening_sentences
 from xlmc.outputs.document.content.checks import check_blocks
 from xlmc.outputs.document.content.filters import count_blocks, filter_blocks
@@ -28,7 +28,9 @@ def write_results(page: Page, simulation: RunResult) -> None:
     book = simulation.model.workbook.name
     settings = simulation.settings
     page.height = _ROW
-    page.title("Results of the simulation", f"{book}, seed {settings.seed}, {count_text(simulation.evaluated)} trials")
+    page.title(
+        "Results of the simulation", f"{book}, seed {settings.seed}, {counted_text(simulation.evaluated, 'trial')}"
+    )
     blocks: list[Block] = [Paragraph(sentence, "warning") for sentence in opening_sentences(simulation)]
     blocks += answer_tables(simulation)
     blocks += count_blocks(simulation)

@@ -6,9 +6,13 @@ import { test } from "node:test";
 import { runInThisContext } from "node:vm";
 
 runInThisContext(readFileSync(new URL("../../../../xlmc/outputs/page/numbers.js", import.meta.url), "utf8"));
-/* global SIGNS, computed, countText, decimalsOf, estimateText, formText, percentText, plainNumber, typed, whyNoNumber */
+/* global SIGNS, computed, countText, countedText, decimalsOf, estimateText, formText, percentText, plainNumber, typed, whyNoNumber */
 
 const PLAIN = { factor: 1, before: "", after: "" };
+
+test("what is counted has its noun", () => {
+  assert.deepEqual([0, 1, 3542].map((count) => countedText(count, "trial")), ["0 trials", "1 trial", "3,542 trials"]);
+});
 
 test("a step of an axis is written with all its decimals, and with no more", () => {
   for (const [step, decimals] of [[1, 0], [2, 0], [5, 0], [10, 0], [25, 0], [2.5, 1], [0.5, 1], [0.2, 1], [0.25, 2], [0.025, 3],

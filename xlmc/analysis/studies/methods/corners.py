@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.methods.answer import Answer, Errors, MethodResult
 from xlmc.analysis.studies.methods.points import Evaluation, assumptions_of, box_of
 from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import count_text, counted_text
 
 __all__ = ["Corners"]
 
@@ -49,7 +49,7 @@ class Corners:
         answers = {f.name: _bounds(column) for f, column in zip(model.forecasts, found.T, strict=True)}
         lost = int(np.count_nonzero(np.isnan(found).any(axis=1)))
         if lost:
-            remarks = (*remarks, f"in {count_text(lost)} corners a forecast is not a number; these are left out")
+            remarks = (*remarks, f"left out: {counted_text(lost, 'corner')} in which a forecast is not a number")
         return MethodResult(time.perf_counter() - started, evaluate.count, answers, remarks=(*remarks, *box.remarks))
 
 

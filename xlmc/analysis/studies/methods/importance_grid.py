@@ -23,7 +23,7 @@ from xlmc.errors import SimulationError
 from xlmc.montecarlo.loop.blocks import Task
 from xlmc.montecarlo.loop.scheduling.run_spec import model_runner
 from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.montecarlo.number_text import count_text, fixed_text
+from xlmc.montecarlo.number_text import count_text, counted_text, fixed_text
 from xlmc.montecarlo.sampling.sampling_methods import Margin
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
 from xlmc.montecarlo.sampling.streams import Stream
@@ -70,7 +70,7 @@ class ImportanceGrid:
         total, squares = float(weights.sum()), float(np.sum(weights**2))
         effective = total**2 / squares if squares else 0.0
         remark = (
-            f"of {count_text(weights.size)} accepted trials, {fixed_text(effective, 0)} count "
+            f"of {counted_text(weights.size, 'accepted trial')}, {fixed_text(effective, 0)} count "
             "fully (effective sample size)"
         )
         seconds = time.perf_counter() - started

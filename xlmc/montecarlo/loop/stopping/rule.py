@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo.definitions.stopping import AcceptedTrials
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import counted_text
 
 __all__ = ["Columns", "Observed", "StopRule", "UntilAccepted"]
 
@@ -78,7 +78,7 @@ class UntilAccepted:
 
     @property
     def goal(self) -> str:
-        return f"{count_text(self._wanted)} trials were accepted"
+        return f"{counted_text(self._wanted, 'trial')} {'was' if self._wanted == 1 else 'were'} accepted"
 
     @property
     def share(self) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.outputs.document.charts import shares_chart
 from xlmc.outputs.document.drawings import forecast_drawing
 from xlmc.outputs.document.parts import Block, Figure, Paragraph
@@ -49,7 +49,7 @@ def section(material: Material) -> Iterator[Block]:
         if row.is_share:
             caption = f"{figure.name}: {figure.said}."
         if bins.counted < row.trials:
-            caption += f" Trials are weighted: the figure shows {count_text(bins.counted)} trials of equal weight."
+            caption += f" Trials are weighted: the figure shows {counted_text(bins.counted, 'trial')} of equal weight."
         if bins.below or bins.above:
             caption += not_drawn(bins)
         drawing = (

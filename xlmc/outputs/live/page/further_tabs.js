@@ -104,9 +104,10 @@ class PairView {
       return;
     }
     const shown = Math.min(pair.x.length, MOST_DOTS);
-    const first = pair.looked < pair.accepted ? `the first ${countText(pair.looked)} of ${countText(pair.accepted)}` : countText(pair.trials);
+    const first = pair.looked < pair.accepted ? `the first ${countText(pair.looked)} of ${countedText(pair.accepted, "accepted trial")}`
+      : countedText(pair.trials, "accepted trial");
     const related = pair.correlation === null ? "" : `; rank correlation ${styled(pair.correlation.toFixed(2))}`;
-    this.said.textContent = `${countText(shown)} of ${first} accepted trials${related}`;
+    this.said.textContent = `${countText(shown)} of ${first}${related}`;
     this.quadrants.textContent = pair.quadrants;
     this.chart.setAttribute("aria-label", `${pair.second} against ${pair.first}: ${this.said.textContent}`);
     this.pair = pair;

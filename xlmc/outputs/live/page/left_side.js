@@ -245,7 +245,7 @@ class FilterCard {
   count(rejected, trials) {
     const [all, only] = rejected;
     const share = trials ? ` (${styled(((100 * all) / trials).toPrecision(3))} %)` : "";
-    this.rejected.textContent = `rejects ${countText(all)} of ${countText(trials)} trials${share}, ${countText(only)} of them alone`;
+    this.rejected.textContent = `rejects ${countText(all)} of ${countedText(trials, "trial")}${share}, ${countText(only)} of them alone`;
   }
 }
 

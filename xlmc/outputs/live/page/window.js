@@ -84,7 +84,7 @@ const Live = {
   on_frame(message) {
     this.right.frame(message);
     this.left.reshape(message.shapes);
-    const run = `${countText(message.trials)} trials, ${countText(message.accepted)} accepted (${message.share})`;
+    const run = `${countedText(message.trials, "trial")}, ${countText(message.accepted)} accepted (${message.share})`;
     const few = message.few ? ": too few for an answer" : "";
     this.standing = message.stage === "rest" ? `Done: ${run}${few}` : `Refining: ${run} so far${few}`;
     document.body.classList.toggle("few", message.few);

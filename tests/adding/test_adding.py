@@ -218,7 +218,7 @@ def test_the_setting_is_recorded_and_repeated(folder, printed):
 
 def test_the_sheet_holds_the_largest_values(folder, answers, trials):
     book = openpyxl.load_workbook(folder / "slow.xlsx")
-    assert book.sheetnames[-4:-1] == ["Largest", "Record", "Signs of the answers"]  # then what its chart draws
+    assert book.sheetnames[-4:-1] == ["Signs of the answers", "Record", "Largest"]  # then what its chart draws
     rows = {row[0]: row[1:6] for row in book["Largest"].iter_rows(values_only=True)}
     for name in FORECASTS:
         assert list(rows[name]) == sorted((trial[name] for trial in trials), reverse=True)[:5]

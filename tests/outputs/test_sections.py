@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 
 import openpyxl
 import pytest
@@ -17,9 +18,10 @@ from xlmc.outputs.document.build import build
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Bar, Bars, Bullets, Chart, Code, Figure, Heading, Line, Lines, Paragraph, Table
-from xlmc.outputs.document.sections import OUTPUTS, Section
+from xlmc.outputs.document.sections import OUTPUTS, Section, in_order
 from xlmc.outputs.notebook import run_html
 from xlmc.outputs.page import page_text
+from xlmc.outputs.sheets.book import SHEETS
 
 SAID = ("Moon phase", "The moon was new.", "Full moons", "1,234.5", "Phase of the night", "a <b>", "xlmc moon")
 
@@ -97,8 +99,47 @@ def test_it_is_on_the_terminal(case_run, capsys):
 
 def test_every_row_says_where_an_output_has_it_otherwise():
     for name, row in SECTIONS.items():
-        assert set(row.elsewhere) <= set(OUTPUTS), name
-        assert all(row.elsewhere.values()), name
+        assert {*row.elsewhere, *row.own} <= {*OUTPUTS}, name
+        assert not {*row.elsewhere} & {*row.own}, name
+        assert all((*row.elsewhere.values(), *row.own.values())), name
+
+
+def parts_of(page):
+    """The sections of a page, and the links to them, by their keys in their order."""
+    return re.findall('<section id="([^"]*)"', page), re.findall('<a href="#([^"]*)"', page)
+
+
+def named(output):
+    """The names of what an output shows, in the order of the rows."""
+    found = [row.own.get(output, (name,)) for name, row in SECTIONS.items() if output not in row.elsewhere]
+    return [*dict.fromkeys(each for names in found for each in names)]
+
+
+def test_the_page_has_its_parts_in_the_order_of_the_rows(case_run):
+    parts, links = parts_of(page_text(case_run, beside=case_run))
+    assert links == parts
+    assert {*parts} <= {*named("page")}
+    assert parts == [each for each in named("page") if each in parts]
+    assert {"answer", "second", "forecasts", "sensitivity", "moon", "record"} <= {*parts}
+
+
+def test_sheets_stand_in_the_order_of_the_rows(case_run, tmp_path):
+    assert {sheet.name for sheet in SHEETS} <= {*named("sheets")}
+    for row in SECTIONS.values():
+        assert {*row.own.get("sheets", ())} <= {sheet.name for sheet in SHEETS}
+    titles = {name: row.heading for name, row in SECTIONS.items()}
+    expected = [titles.get(name, name) for name in named("sheets")]
+    book = openpyxl.load_workbook(save(case_run, tmp_path / "results.xlsx"))
+    found = [name for name in book.sheetnames if name in expected]
+    assert found == [name for name in expected if name in found]
+    assert found[0] == "Results"
+    assert found[-2:] == ["Record", "Moon phase"]
+
+
+def test_what_no_row_names_comes_last():
+    assert [*in_order("sheets", dict.fromkeys(("New", "Record", "Results"), 1), {"pairs": 2})] == [
+        *("Results", "pairs", "Record", "New")
+    ]
 
 
 def test_long_sections_are_in_a_report_that_asks_for_them(case_run):

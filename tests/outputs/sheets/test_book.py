@@ -16,10 +16,11 @@ from simulated import simulated
 
 from xlmc.montecarlo.columns import column_store, on_disk
 from xlmc.montecarlo.model.loading import load
+from xlmc.outputs.document.sections import in_order
 from xlmc.outputs.sheets.book import SHEETS, build_sheets
 
 OF_SOME = ("Evidence results", "Scenarios")  # which these books do not have
-NAMES = [sheet.name for sheet in SHEETS if sheet.name not in OF_SOME]
+NAMES = [name for name in in_order("sheets", {sheet.name: sheet for sheet in SHEETS}, {}) if name not in OF_SOME]
 RUNS = ["run", "none_accepted", "one_accepted"]
 
 

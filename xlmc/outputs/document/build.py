@@ -135,7 +135,7 @@ def further_sections(simulation: RunResult, output: str) -> dict[str, tuple[str,
         simulation: the finished run.
         output: one of `OUTPUTS`, whose other sections have a form of their own there.
     """
-    rows = {name: section for name, section in SECTIONS.items() if output not in section.elsewhere}
+    rows = {name: section for name, section in SECTIONS.items() if section.is_further(output)}
     if not rows:
         return {}
     material = Material(simulation, make_record(simulation, None), _forecasts(Wanted(), simulation.model))

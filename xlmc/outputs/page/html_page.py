@@ -27,6 +27,7 @@ from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.outputs.document import further_sections
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import blocks_html
+from xlmc.outputs.document.sections import in_order
 from xlmc.outputs.histogram import figures_of
 from xlmc.outputs.page.forecast_charts import charts, overlays
 from xlmc.outputs.page.payload import payload_text
@@ -40,9 +41,7 @@ from xlmc.outputs.page.sheet_sections import (
     evidence,
     filters,
     notices,
-    pairs,
     record,
-    scenarios,
     statistics,
 )
 
@@ -162,10 +161,8 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
         "second": EMPTY if beside is None else second_run(simulation, beside),
         "forecasts": charts(simulation, figures),
         "overlay": overlays(figures) if len(figures) < _MANY else EMPTY,
-        "certainty": certainty(simulation),
-        "scenarios": scenarios(simulation),
-        "pairs": pairs(simulation),
         "statistics": statistics(simulation),
+        "certainty": certainty(simulation),
         "sensitivity": EMPTY if found is None else dependence(found, simulation.model.workbook),
         "checks": checks(simulation),
         "evidence": evidence(simulation),
@@ -176,11 +173,12 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
         "record": record(make_record(simulation, command)),
     }
     further = further_sections(simulation, "page")
-    parts |= {
+    others = {
         key: element("section", element("h2", heading), blocks_html(blocks), id=key)
         for key, (heading, blocks) in further.items()
     }
-    links = _LINKS | {key: heading for key, (heading, _) in further.items()}
+    parts = in_order("page", parts, others)
+    links = {key: heading for key, (heading, _) in further.items()} | _LINKS
     data = payload_text(simulation, figures, beside)
     if sum(len(part.source) for part in parts.values()) + len(data) > _LARGE:
         parts |= {key: _packed_section(key, parts[key]) for key in _PACKED if parts[key] != EMPTY}

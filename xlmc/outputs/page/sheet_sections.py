@@ -6,9 +6,7 @@ from collections.abc import Collection, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.record import Entry, Record, RecordTable, Section, Value
-from xlmc.analysis.results.statements import pairs_of
 from xlmc.analysis.results.statements.in_words import distribution_text, status
-from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.number_text import styled_text, whole_text
@@ -27,8 +25,6 @@ from xlmc.outputs.document.content.checks import check_blocks
 from xlmc.outputs.document.content.evidence import evidence_blocks
 from xlmc.outputs.document.content.filters import count_blocks, filter_blocks
 from xlmc.outputs.document.content.notices import notice_blocks
-from xlmc.outputs.document.content.pairs import pair_blocks
-from xlmc.outputs.document.content.scenarios import scenario_blocks
 from xlmc.outputs.document.content.statistics import statistics_sentence, statistics_tables
 from xlmc.outputs.document.element import EMPTY, Html, element
 from xlmc.outputs.document.html_writer import blocks_html, cell_html, picture_html
@@ -47,9 +43,7 @@ __all__ = [
     "evidence",
     "filters",
     "notices",
-    "pairs",
     "record",
-    "scenarios",
     "statistics",
 ]
 
@@ -74,18 +68,6 @@ def certainty(simulation: RunResult, names: Collection[str] | None = None) -> Ht
     said = "The share of the accepted trials below, in and above each central range, as it is rounded here."
     blocks = certainty_blocks(simulation, _named(simulation, names))
     return _section("certainty", "Certainty of ranges", (Paragraph(said, "small"), *blocks))
-
-
-def pairs(simulation: RunResult) -> Html:
-    """Forecasts two at a time; nothing where there are no two that vary."""
-    found = pairs_of(simulation) if simulation.weighting is None else []
-    return _section("pairs", "Forecasts two at a time", pair_blocks(simulation, found))
-
-
-def scenarios(simulation: RunResult) -> Html:
-    """Return the answers of the workbook's scenarios beside its own; nothing if they were not run."""
-    found = scenario_answers(simulation)
-    return _section("scenarios", "Scenarios", scenario_blocks(found, impossible_scenarios(simulation)))
 
 
 def statistics(simulation: RunResult, names: Collection[str] | None = None) -> Html:

@@ -1,12 +1,12 @@
 """All result sheets as a workbook of their own, built in memory: the same run gives the same bytes.
 
 To add a sheet, write a module beside this one with a function that writes a `Page` of a run, and its row in `SHEETS`;
-describe it in docs/guide.md. docs/adding.md has an example.
+describe it in docs/guide.md. docs/adding.md has an example. The sheet stands where the row of a section names it.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
@@ -15,6 +15,7 @@ from xlmc.analysis.results.record import make_record
 from xlmc.analysis.studies.sensitivity import Sensitivities, sensitivities
 from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.outputs.case_fields import case_of
+from xlmc.outputs.document.sections import in_order
 from xlmc.outputs.histogram import Figure, figures_of
 from xlmc.outputs.sheets import (
     assumptions_sheet,
@@ -192,7 +193,7 @@ SHEETS: Final[tuple[ResultSheet, ...]] = (
     ResultSheet("Curves", lambda _, run: run.curves.finish(), after=("Charts", "Pairs", "Assumptions")),
     ResultSheet("Record", _record, record_sheet.WIDTHS),
 )
-"""The sheets in the order of their tabs."""
+"""The sheets that are more than blocks; the sections say in which order their tabs stand."""
 
 
 @in_style_of("settings.number_style")
@@ -201,7 +202,7 @@ def build_sheets(
     *,
     command: str | None = None,
     rows: int = trials_sheet.TRIAL_ROWS,
-    further: Sequence[ResultSheet] = (),
+    further: Mapping[str, ResultSheet] | None = None,
 ) -> dict[str, bytes]:
     """Return the result sheets of a run, as the parts of a workbook that holds them alone.
 
@@ -209,7 +210,7 @@ def build_sheets(
         simulation: the finished run.
         command: what the person typed, for the record.
         rows: the most accepted trials to write out.
-        further: sheets behind the others.
+        further: the sheets of the sections that have none in `SHEETS`, by the names of the sections.
 
     Raises:
         DefinitionError: the table `xlmc_case` is not what it must be.
@@ -218,7 +219,7 @@ def build_sheets(
 
     with ExactBook() as book:
         book.set_properties({"created": CREATED})
-        sheets = (*SHEETS, *further)
+        sheets = [*in_order("sheets", {sheet.name: sheet for sheet in SHEETS}, further or {}).values()]
         run = Writing(book, simulation, command, rows, sheets)
         waiting = [sheet for sheet in sheets if sheet.name in run.pages]
         while waiting:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -38,7 +38,7 @@ def save(
     command: str | None = None,
     rows: int = TRIAL_ROWS,
     overwrite: bool = False,
-    further: Sequence[ResultSheet] = (),
+    further: Mapping[str, ResultSheet] | None = None,
 ) -> Path:
     """Write the workbook with result sheets behind its own; those of an earlier run are replaced.
 
@@ -50,7 +50,7 @@ def save(
         command: what the person typed, for the record.
         rows: the most accepted trials to write out.
         overwrite: replace any other file too, and write into the workbook itself where the path is its own.
-        further: sheets behind the others.
+        further: the sheets of the sections that have none of their own, by the names of the sections.
 
     Returns:
         The path.

@@ -8,7 +8,6 @@ to the last bits. `NOT_OF_THE_RUN` lists the few that are not numbers of a run.
 from __future__ import annotations
 
 import json
-import math
 import re
 import subprocess
 from datetime import date, timedelta
@@ -21,7 +20,7 @@ import numpy as np
 import openpyxl
 import pytest
 from click.testing import CliRunner
-from kinds_book import write_book
+from kinds_book import write_full_book
 from workbook_files import add_tables
 
 from xlmc.cli import xlmc
@@ -35,19 +34,6 @@ WITH_ERROR = re.compile(
 FACTORS = (1.0, 100.0, 24.0, 1440.0, 86_400.0)
 """What a number is multiplied by: shares in percent; of days hours, minutes and seconds."""
 
-DECISIONS = [
-    ["Name", "Cell", "Low", "High", "Step", "Values", "Units"],
-    ["Order", "=Model!B30", 20, 40, 20, None, "pieces"],
-    ["Price", "=Model!B31", None, None, None, "5; 6", None],
-]
-SCENARIOS = [
-    ["Name", "Speed in High", "Cost in High", "Model!B31", "Share in", "Limit"],
-    ["slower", 37, None, None, None, None],
-    ["dearer", None, 300_000, 5.5, "0.35 to 0.45", None],
-    ["known", None, None, None, 0.45, "at most 38"],
-    ["cheap", None, None, 4, None, None],
-]
-
 NOT_OF_THE_RUN = {
     *("Model", "Tables", "More"),  # of the book itself
     "Trials",  # each of them
@@ -57,24 +43,6 @@ NOT_OF_THE_RUN = {
     "Lost to errors in cells",  # the bound of a share that JSON gives as a count
 }
 """Sheets, and rows by their first cell, that have other numbers than those of JSON."""
-
-
-def write_full_book(path, *, filtered):
-    """The book of `test_kinds`, with decisions, scenarios, and inputs that these change."""
-    book = openpyxl.load_workbook(write_book(path, filtered=filtered))
-    sheet = book["Model"]
-    sheet["B30"], sheet["B31"] = 30, 5
-    sheet["B10"], sheet["B11"] = "=B1^2/10*(1+B30/1000)", "=B2*(1+B1/100)-B30*B31*100"
-    sheet["B6"].number_format, sheet["B7"].number_format = "yyyy-mm-dd", "0.0%"  # assumptions that are no bare numbers
-    sheet["B2"].number_format = '"$"#,##0'
-    sheet["B31"].number_format = '"$"#,##0.00'
-    book["Tables"]["A7"] = "Share in"  # not as the name of a cell's heading
-    for number in range(40):
-        sheet.cell(number + 1, 8, round(20 + 5 * math.sin(number * 1.7), 3))
-    scenarios = [row[:5] + row[5:] * filtered for row in SCENARIOS]
-    add_tables(book.create_sheet("More"), {"xlmc_decisions": DECISIONS, "xlmc_scenarios": scenarios})
-    book.save(path)
-    return str(path)
 
 
 COMMANDS = {

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
+
 import openpyxl
 from workbook_files import add_tables
 
-__all__ = ["FORECASTS", "write_book"]
+__all__ = ["FORECASTS", "write_book", "write_full_book"]
 
 FORECASTS = {
     "Speed": ("=B1^2/10", "General", "m", 100),
@@ -36,6 +38,20 @@ ASSUMPTIONS = [
 ]
 
 
+DECISIONS = [
+    ["Name", "Cell", "Low", "High", "Step", "Values", "Units"],
+    ["Order", "=Model!B30", 20, 40, 20, None, "pieces"],
+    ["Price", "=Model!B31", None, None, None, "5; 6", None],
+]
+SCENARIOS = [
+    ["Name", "Speed in High", "Cost in High", "Model!B31", "Share in", "Limit"],
+    ["slower", 37, None, None, None, None],
+    ["dearer", None, 300_000, 5.5, "0.35 to 0.45", None],
+    ["known", None, None, None, 0.45, "at most 38"],
+    ["cheap", None, None, 4, None, None],
+]
+
+
 def write_book(path, *, filtered, kinds=(), settings=()):
     """A workbook with a forecast of each kind; `kinds` are those that its column Kind names; more rows of settings."""
     book = openpyxl.Workbook()
@@ -56,3 +72,21 @@ def write_book(path, *, filtered, kinds=(), settings=()):
     add_tables(tables, filled)
     book.save(path)
     return path
+
+
+def write_full_book(path, *, filtered):
+    """The same book with decisions, scenarios, and inputs that these change."""
+    book = openpyxl.load_workbook(write_book(path, filtered=filtered))
+    sheet = book["Model"]
+    sheet["B30"], sheet["B31"] = 30, 5
+    sheet["B10"], sheet["B11"] = "=B1^2/10*(1+B30/1000)", "=B2*(1+B1/100)-B30*B31*100"
+    sheet["B6"].number_format, sheet["B7"].number_format = "yyyy-mm-dd", "0.0%"  # assumptions that are no bare numbers
+    sheet["B2"].number_format = '"$"#,##0'
+    sheet["B31"].number_format = '"$"#,##0.00'
+    book["Tables"]["A7"] = "Share in"  # not as the name of a cell's heading
+    for number in range(40):
+        sheet.cell(number + 1, 8, round(20 + 5 * math.sin(number * 1.7), 3))
+    scenarios = [row[:5] + row[5:] * filtered for row in SCENARIOS]
+    add_tables(book.create_sheet("More"), {"xlmc_decisions": DECISIONS, "xlmc_scenarios": scenarios})
+    book.save(path)
+    return str(path)

@@ -207,7 +207,7 @@ def _check(
 ) -> None:
     """Refuse, before anything is computed, what could not be written; `read` are the files read, BOOK first."""
     from xlmc.errors import WorkbookError
-    from xlmc.excel.workbook.target import Target, copy_ending, refuse_folder, refuse_same_file
+    from xlmc.excel.workbook.target import Target, refuse_folder, refuse_other_copy, refuse_same_file
     from xlmc.montecarlo.number_text import count_text
 
     refuse_same_file(outputs)
@@ -217,9 +217,8 @@ def _check(
         ending = path.suffix.casefold()
         if ending in _TABLES and not wanted:
             raise click.UsageError(f"which cells is {path} to hold? Name them: --cells Results!B2:B9")
-        if ending not in _TABLES and ending != copy_ending(book).casefold():
-            hint = f"Name it {path.with_suffix(copy_ending(book)).name!r}; cells alone go to .csv or .json"
-            raise WorkbookError(f"a copy of {book.name} must end in {copy_ending(book)}", where=path, hint=hint)
+        if ending not in _TABLES:
+            refuse_other_copy(path, book, beside="; cells alone go to .csv or .json")
         if ending not in _TABLES and rows > 1:
             hint = f"Write the cells of all rows to a table: -o {path.with_suffix('.csv').name} --cells Results!B2:B9"
             raise WorkbookError(

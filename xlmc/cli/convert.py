@@ -43,10 +43,10 @@ def convert(
     from xlmc.outputs.conversion.convert import convert as write
     from xlmc.outputs.sheets.save import check_ending
 
+    path = output or book.with_name(f"{book.stem}-converted{copy_ending(book)}")
+    check_ending(path, book)
     model = load(book, functions=functions)
     use_number_style(model.definitions.settings.number_style)
-    path = output or model.path.with_name(f"{model.path.stem}-converted{copy_ending(model.path)}")
-    check_ending(path, model.path)
     found = write(model, path, overwrite=overwrite)
     notices(model.notices)
     counts: dict[str, int] = {}

@@ -64,13 +64,12 @@ def scenario(
             say(f"warning: {fault}", err=True)
         raise click.exceptions.Exit(1 if impossible else 0)
     edited = edited_workbook(model, name)
-    _show(edited, model)
     target = book if in_place else output
-    if target is None:
-        say("Nothing was written: -o NEW.xlsx writes a copy, --in-place the workbook itself.")
-        return
-    write_edited(edited, target, overwrite=overwrite or in_place)
-    say(f"Written: {target}")
+    if target is not None:
+        write_edited(edited, target, overwrite=overwrite or in_place)
+    _show(edited, model)
+    nothing = "Nothing was written: -o NEW.xlsx writes a copy, --in-place the workbook itself."
+    say(nothing if target is None else f"Written: {target}")
 
 
 def _show(edited: EditedWorkbook, model: CompiledModel) -> None:

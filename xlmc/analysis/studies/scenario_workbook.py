@@ -23,10 +23,9 @@ from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.target import (
     Target,
-    copy_ending,
     is_same_file,
-    refuse_folder,
     refuse_into_source,
+    refuse_other_copy,
     refuse_read,
 )
 from xlmc.excel.workbook.workbook import CellValue, Workbook
@@ -119,11 +118,7 @@ def write_edited(edited: EditedWorkbook, path: Path, *, overwrite: bool = False)
         TakenError: the file is there already, has changed since it was read, or a program has it open.
         WorkbookError: it cannot be written, or has another ending than the workbook.
     """
-    ending = copy_ending(edited.path)
-    if path.suffix.casefold() != ending.casefold():
-        refuse_folder(path)
-        hint = f"Name it {path.with_suffix(ending).name!r}"
-        raise WorkbookError(f"a copy of a {edited.path.suffix} workbook must end in {ending}", where=path, hint=hint)
+    refuse_other_copy(path, edited.path)
 
     def check() -> None:
         if overwrite and is_same_file(path, edited.path):

@@ -25,6 +25,7 @@ __all__ = [
     "refuse_folder",
     "refuse_into_other_format",
     "refuse_into_source",
+    "refuse_other_copy",
     "refuse_other_ending",
     "refuse_read",
     "refuse_same_file",
@@ -144,6 +145,27 @@ def refuse_existing(path: Path) -> None:
 def copy_ending(source: Path) -> str:
     """Return the ending of what is written of a workbook: its own, and `.xlsx` of an `.xls`, `.xlsb` or `.ods`."""
     return ".xlsx" if source.suffix.casefold() in {each.ending for each in FORMATS} else source.suffix
+
+
+def refuse_other_copy(path: Path, source: Path, what: str = "a copy", beside: str = "") -> None:
+    """Refuse an ending that is not that of a workbook's copies, and a folder.
+
+    Excel opens no file whose ending says that it has macros when it has none, or the other way round.
+
+    Args:
+        path: where the copy is to go.
+        source: the workbook.
+        what: is to be written, for the message.
+        beside: further words of the hint.
+
+    Raises:
+        WorkbookError: the ending is another, or the path leads to a folder.
+    """
+    ending = copy_ending(source)
+    if path.suffix.casefold() != ending.casefold():
+        refuse_folder(path)
+        hint = f"Name it {path.with_suffix(ending).name!r}{beside}"
+        raise WorkbookError(f"{what} of a {source.suffix} workbook must end in {ending}", where=path, hint=hint)
 
 
 def refuse_into_other_format(path: Path) -> None:

@@ -14,10 +14,9 @@ from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.seal import sealed_parts
 from xlmc.excel.workbook.target import (
     Target,
-    copy_ending,
     is_same_file,
-    refuse_folder,
     refuse_into_source,
+    refuse_other_copy,
     refuse_read,
 )
 from xlmc.excel.workbook.writer import QUICK, write_workbook
@@ -88,12 +87,7 @@ def check_ending(path: Path, source: Path) -> None:
     if not source.suffix:
         hint = f"Rename it, such as {source.name.strip('.') + '.xlsx'!r}: Excel opens no result without an ending"
         raise WorkbookError("the name of the workbook has no ending", where=source, hint=hint)
-    # Excel opens no file whose ending says that it has macros when it has none, or the other way round.
-    ending = copy_ending(source)
-    if path.suffix.casefold() != ending.casefold():
-        refuse_folder(path)
-        hint = f"Name it {path.with_suffix(ending).name!r}"
-        raise WorkbookError(f"results of a {source.suffix} workbook must end in {ending}", where=path, hint=hint)
+    refuse_other_copy(path, source, "results")
 
 
 def _check(simulation: RunResult, path: Path, *, overwrite: bool) -> None:

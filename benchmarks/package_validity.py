@@ -34,8 +34,9 @@ from fuzzing.books import packed, shipped
 from fuzzing.featured import featured
 
 from xlmc.errors import XlmcError
-from xlmc.excel.workbook.inject import inject, result_sheets
+from xlmc.excel.workbook.inject import inject
 from xlmc.excel.workbook.injection.content_types import roles
+from xlmc.excel.workbook.injection.host import result_sheets
 from xlmc.excel.workbook.injection.strict import STRICT_MAIN
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.package_check import checked_bytes

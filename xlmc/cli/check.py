@@ -45,7 +45,7 @@ def check(
     from xlmc.cli.printing import notices, use_number_style
     from xlmc.engine.engines import ENGINES
     from xlmc.errors import XlmcError
-    from xlmc.excel.workbook.inject import refuse_unwritable
+    from xlmc.excel.workbook.injection.host import refuse_unwritable
     from xlmc.excel.workbook.reader import read_workbook
     from xlmc.montecarlo.definitions.definitions_reader import read_definitions
     from xlmc.montecarlo.model.labels import calculate_labels

@@ -292,7 +292,7 @@ class Outputs(NamedTuple):
         """
         has_book = bool(self.default or self.books)
         if has_book:
-            from xlmc.excel.workbook.inject import refuse_unwritable
+            from xlmc.excel.workbook.injection.host import refuse_unwritable
 
             refuse_unwritable(model.workbook.parts)
         if self.reports:

@@ -11,7 +11,8 @@ import xlsxwriter
 from xlmc.analysis.studies.verify import Status, verify
 from xlmc.errors import WorkbookError
 from xlmc.excel.address import Area, Cell
-from xlmc.excel.workbook.inject import inject, refuse_unwritable
+from xlmc.excel.workbook.inject import inject
+from xlmc.excel.workbook.injection.host import refuse_unwritable
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook

@@ -15,9 +15,9 @@ from xlmc.analysis.studies.scenario_answers import model_of, scenario_named
 from xlmc.errors import DefinitionError, ErrorCode, WorkbookError
 from xlmc.excel.address import Cell
 from xlmc.excel.workbook.formats import other_format
-from xlmc.excel.workbook.inject import result_sheets
 from xlmc.excel.workbook.injection.cell_edit import Content, with_calculation_on_load, with_contents
 from xlmc.excel.workbook.injection.content_types import roles
+from xlmc.excel.workbook.injection.host import result_sheets
 from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook

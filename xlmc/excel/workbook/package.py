@@ -35,6 +35,7 @@ __all__ = [
     "hash_parts",
     "read_parts",
     "relationships",
+    "relative_target",
     "rels_part",
     "stored_part",
     "unpacked",
@@ -153,6 +154,11 @@ def content_type(parts: Mapping[str, bytes], part: str) -> str:
         each.get("ContentType", "") for each in named if each.get("PartName", "").casefold() == f"/{part}".casefold()
     )
     return next(found, "")
+
+
+def relative_target(source: str, target: str) -> str:
+    """How one part points to another: `xl/workbook.xml, xl/styles.xml -> styles.xml`."""
+    return posixpath.relpath(f"/{target}", posixpath.dirname(f"/{source}"))
 
 
 def rels_part(part: str) -> str:

@@ -25,8 +25,7 @@ from xlmc.errors import WorkbookError
 from xlmc.excel.workbook.injection.book_edit import add_pointers
 from xlmc.excel.workbook.injection.content_types import add_types
 from xlmc.excel.workbook.injection.part_numbers import claimed_names, free_part_names
-from xlmc.excel.workbook.injection.result_sheet import relative_target
-from xlmc.excel.workbook.package import CONTENT_TYPES, WORKBOOKS, read_parts, rels_part
+from xlmc.excel.workbook.package import CONTENT_TYPES, WORKBOOKS, read_parts, relative_target, rels_part
 
 __all__ = ["ENDINGS", "Seal", "blank_seal", "read_seal", "seal_file", "sealed_json", "sealed_parts", "sealed_text"]
 

@@ -16,7 +16,8 @@ import numpy as np
 
 from xlmc.errors import DefinitionError, FormulaError, WorkbookError
 from xlmc.excel.address import Cell, InFormula, host_of
-from xlmc.excel.workbook.inject import inject, remove_result_sheets
+from xlmc.excel.workbook.inject import inject
+from xlmc.excel.workbook.injection.host import remove_result_sheets
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.structure import read_structure

@@ -13,8 +13,9 @@ from pathlib import Path
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Area, Cell
-from xlmc.excel.workbook.inject import inject, result_sheets
+from xlmc.excel.workbook.inject import inject
 from xlmc.excel.workbook.injection.cell_edit import Content, Typed, with_contents, with_last_row
+from xlmc.excel.workbook.injection.host import result_sheets
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.structure import read_structure, table_part

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 
 from xlmc.analysis.studies.scenario_answers import scenario_answers
 from xlmc.errors import SimulationError, WorkbookError
-from xlmc.excel.workbook.inject import inject, result_sheets
+from xlmc.excel.workbook.inject import inject
+from xlmc.excel.workbook.injection.host import result_sheets
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.seal import sealed_parts
 from xlmc.excel.workbook.target import (

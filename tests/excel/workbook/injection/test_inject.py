@@ -7,8 +7,9 @@ import openpyxl
 import pytest
 
 from xlmc.excel.address import Cell
-from xlmc.excel.workbook.inject import inject, original_hash, remove_result_sheets, result_sheets
+from xlmc.excel.workbook.inject import inject, original_hash
 from xlmc.excel.workbook.injection.content_types import roles
+from xlmc.excel.workbook.injection.host import remove_result_sheets, result_sheets
 from xlmc.excel.workbook.injection.splice import as_utf8, parse_spans
 from xlmc.excel.workbook.injection.strict import strict_part
 from xlmc.excel.workbook.package_check import checked_bytes, faults

@@ -17,8 +17,9 @@ from openpyxl.reader import excel
 from openpyxl.worksheet._reader import WorksheetReader
 
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.inject import inject, original_hash, remove_result_sheets
+from xlmc.excel.workbook.inject import inject, original_hash
 from xlmc.excel.workbook.injection.content_types import roles
+from xlmc.excel.workbook.injection.host import remove_result_sheets
 from xlmc.excel.workbook.injection.splice import as_utf8, parse_spans
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.structure import read_structure

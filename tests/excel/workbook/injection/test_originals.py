@@ -4,7 +4,8 @@ import re
 
 import pytest
 
-from xlmc.excel.workbook.inject import inject, original_hash, remove_result_sheets
+from xlmc.excel.workbook.inject import inject, original_hash
+from xlmc.excel.workbook.injection.host import remove_result_sheets
 
 BOOK = "xl/workbook.xml"
 

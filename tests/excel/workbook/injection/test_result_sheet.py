@@ -8,12 +8,12 @@ from xlmc.excel.workbook.injection.part_numbers import free_part_names
 from xlmc.excel.workbook.injection.result_sheet import (
     Renames,
     at_home,
-    relative_target,
     rename_in_xml,
     shared_items,
     with_differential,
 )
 from xlmc.excel.workbook.injection.styles_merge import StyleMap
+from xlmc.excel.workbook.package import relative_target
 
 STRINGS = [b"<t>zero</t>", b'<t xml:space="preserve"> &lt;c r="A1" t="s">&lt;v>0&lt;/v> </t>']
 STYLES = StyleMap(cells=(5, 7), differential=(3, 4))

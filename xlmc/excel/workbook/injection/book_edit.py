@@ -13,7 +13,6 @@ from html import escape
 from itertools import chain
 
 from xlmc.errors import WorkbookError
-from xlmc.excel.workbook.injection.result_sheet import SheetName
 from xlmc.excel.workbook.injection.splice import OFFICE_RELATIONSHIPS, Element, SplicedXml, render
 from xlmc.excel.workbook.injection.strict import STRICT_MAIN, strict_type
 from xlmc.excel.workbook.safe_xml import REPAIR
@@ -33,6 +32,15 @@ __all__ = [
 
 _LAST_SHEET_ID = 65534
 _BEFORE_NAMES = ("sheets", "functionGroups", "externalReferences")
+
+
+@dataclass(frozen=True, slots=True)
+class SheetName:
+    """A defined name of one sheet, such as its print titles; `text` is what it stands for."""
+
+    name: str
+    text: str
+    hidden: bool = False
 
 
 @dataclass(frozen=True, slots=True)

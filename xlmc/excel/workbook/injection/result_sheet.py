@@ -7,28 +7,26 @@ and attributes), so patterns that start at a `<` cannot mistake text for markup,
 
 from __future__ import annotations
 
-import posixpath
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape, unescape
 from typing import Final
 
+from xlmc.excel.workbook.injection.book_edit import SheetName
 from xlmc.excel.workbook.injection.content_types import roles
 from xlmc.excel.workbook.injection.part_numbers import TableNumbers, rename_in_formula
 from xlmc.excel.workbook.injection.splice import Element, SplicedXml, parse_spans
 from xlmc.excel.workbook.injection.styles_merge import StyleMap
-from xlmc.excel.workbook.package import Relationship, relationships, rels_part
+from xlmc.excel.workbook.package import Relationship, relationships, relative_target, rels_part
 
 __all__ = [
     "BuiltBook",
     "BuiltSheet",
     "Carrier",
     "Renames",
-    "SheetName",
     "at_home",
     "read_built",
-    "relative_target",
     "rename_in_xml",
     "shared_items",
     "with_differential",
@@ -151,15 +149,6 @@ def _put_number(numbers: Sequence[int]) -> Callable[[re.Match[bytes]], bytes]:
 
 
 @dataclass(frozen=True, slots=True)
-class SheetName:
-    """A defined name of one sheet, such as its print titles; `text` is what it stands for."""
-
-    name: str
-    text: str
-    hidden: bool = False
-
-
-@dataclass(frozen=True, slots=True)
 class BuiltSheet:
     """A worksheet as built. `type` is the relationship type that leads to it, `state` is None if it is visible."""
 
@@ -277,11 +266,6 @@ class Carrier:
             elif target in self.names:
                 document.set(element, "Target", relative_target(self.names[part], self.names[target]))
         return document.result()
-
-
-def relative_target(source: str, target: str) -> str:
-    """How one part points to another: `xl/workbook.xml, xl/styles.xml -> styles.xml`."""
-    return posixpath.relpath(f"/{target}", posixpath.dirname(f"/{source}"))
 
 
 def _with_axis_format(xml: bytes) -> bytes:

@@ -10,7 +10,8 @@ import pytest
 from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
-from xlmc.analysis.results.statements import certainties, pairs_of, statements
+from xlmc.analysis.results.statements.pairs import pairs_of
+from xlmc.analysis.results.statements.sentences import certainties, statements
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.api import Simulation
 from xlmc.errors import WorkbookError

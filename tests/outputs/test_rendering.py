@@ -277,7 +277,7 @@ def test_charts_show_their_titles_and_axes(all_pages, drawn):
 
 
 def test_the_sentences_are_printed_whole(pages, case):
-    from xlmc.analysis.results.statements import statements
+    from xlmc.analysis.results.statements.sentences import statements
 
     printed = " ".join(page.text for page in pages if page.sheet == "Certainty")
     for statement in statements(case):

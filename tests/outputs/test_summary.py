@@ -5,7 +5,7 @@ import math
 import pytest
 from committed_books import BOOKS
 
-from xlmc.analysis.results.statements import statements
+from xlmc.analysis.results.statements.sentences import statements
 from xlmc.excel.workbook.reader import read_workbook
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.stating import Kind

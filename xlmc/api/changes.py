@@ -30,7 +30,7 @@ class Changes:
     @property
     def words(self) -> str:
         """The changes, as results say them."""
-        from xlmc.analysis.results.statements.in_words import changes_text
+        from xlmc.analysis.results.statements.scenarios_in_words import changes_text
 
         return changes_text(self.scenario, self.own.definitions)
 

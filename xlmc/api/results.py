@@ -195,7 +195,7 @@ class Results:
 
         Each forecast is stated at the resolution under `Report to`; of a bound one side alone, of a diagnostic nothing.
         """
-        from xlmc.analysis.results.statements import statements
+        from xlmc.analysis.results.statements.sentences import statements
 
         return tuple(each.text for each in statements(self._run))
 

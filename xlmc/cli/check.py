@@ -137,8 +137,7 @@ def _standing(assumption: Assumption) -> str:
 def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> None:
     from xlmc.analysis.results.statements.in_words import distribution_text, evidence_text, given_text, limits_text
     from xlmc.cli.printing import table
-    from xlmc.montecarlo.number_text import exact_text
-    from xlmc.outputs.summary import percent
+    from xlmc.montecarlo.number_text import exact_text, percent
 
     table(
         "Assumptions",
@@ -208,7 +207,7 @@ def _stated(forecast: Forecast) -> tuple[str, str, str]:
 
 def scenario_table(definitions: Definitions) -> None:
     """Print what each scenario changes; nothing where there are none."""
-    from xlmc.analysis.results.statements.in_words import changes_text
+    from xlmc.analysis.results.statements.scenarios_in_words import changes_text
     from xlmc.cli.printing import table
 
     changes = [(each.name, changes_text(each, definitions), each.note) for each in definitions.scenarios]

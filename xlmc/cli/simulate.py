@@ -159,7 +159,7 @@ def _hints(model: CompiledModel, trials: int | None, engine: str | None) -> list
 
 def show_run(run: RunResult) -> None:
     """Print the paper's table, the acceptance and what each filter rejected."""
-    from xlmc.analysis.results.statements.in_words import sampling_sentence
+    from xlmc.analysis.results.statements.run_in_words import sampling_sentence
     from xlmc.cli.check import check_table, show_first
     from xlmc.cli.printing import table
     from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
@@ -197,7 +197,7 @@ def show_run(run: RunResult) -> None:
 
 def _show_sentences(run: RunResult) -> None:
     """Print what may be quoted, where a forecast says how it is to be stated."""
-    from xlmc.analysis.results.statements import statements
+    from xlmc.analysis.results.statements.sentences import statements
 
     if any(each.says_how for each in run.model.forecasts):
         sentences = [paragraph(f"{each.text}.") for each in statements(run)]
@@ -253,7 +253,8 @@ def _acceptance_sentence(run: RunResult) -> str:
 
 
 def _discards(run: RunResult) -> list[tuple[str, ...]]:
-    from xlmc.analysis.results.statements.in_words import discards_of, limits_text
+    from xlmc.analysis.results.statements.in_words import limits_text
+    from xlmc.analysis.results.statements.run_in_words import discards_of
     from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.summary import share_text
 

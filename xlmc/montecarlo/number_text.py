@@ -29,6 +29,7 @@ __all__ = [
     "in_signs",
     "is_far",
     "number_text",
+    "percent",
     "signs",
     "styled_text",
     "two_digit_exponent",
@@ -130,6 +131,11 @@ def number_text(value: float, digits: int = _DIGITS) -> str:
     power = int(f"{value:.{digits - 1}e}".partition("e")[2])  # once it is rounded: 9.996 -> 10.00
     text = f"{value:,.{max(digits - 1 - power, 0)}f}"
     return _styled(text.rstrip("0").rstrip(".") if "." in text else text)
+
+
+def percent(share: float) -> str:
+    """`0.51 -> 51 %`."""
+    return f"{number_text(100.0 * share, 12)} %"
 
 
 def whole_text(value: float) -> str:

@@ -12,17 +12,11 @@ from typing import TYPE_CHECKING, Any, Final
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.record.definition_tables import correlations_met
 from xlmc.analysis.results.record.errors_met import errors_met, lost_sentences
-from xlmc.analysis.results.statements import certainties, pairs_of, statements
-from xlmc.analysis.results.statements.in_words import (
-    UNWEIGHTED,
-    changes_text,
-    cutoffs_text,
-    discards_of,
-    evidence_text,
-    limits_text,
-    parameters_text,
-    status,
-)
+from xlmc.analysis.results.statements.in_words import cutoffs_text, evidence_text, limits_text, parameters_text
+from xlmc.analysis.results.statements.pairs import pairs_of
+from xlmc.analysis.results.statements.run_in_words import UNWEIGHTED, discards_of, status
+from xlmc.analysis.results.statements.scenarios_in_words import changes_text
+from xlmc.analysis.results.statements.sentences import certainties, statements
 from xlmc.analysis.studies.scenario_answers import (
     ForecastAnswer,
     ScenarioAnswers,
@@ -43,7 +37,7 @@ from xlmc.outputs.summary import BaseCase, base_case
 
 if TYPE_CHECKING:
     from xlmc.analysis.results.record.definition_tables import CorrelationMet
-    from xlmc.analysis.results.statements import Pair
+    from xlmc.analysis.results.statements.pairs import Pair
     from xlmc.montecarlo.definitions.definitions import Assumption, Filter
     from xlmc.montecarlo.diagnostics.agreement import Agreement, Answer, ItemAgreement
     from xlmc.montecarlo.diagnostics.checking import CheckResult

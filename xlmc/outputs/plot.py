@@ -25,7 +25,7 @@ from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.keywords import forecast_named
-from xlmc.montecarlo.number_text import count_text, counted_text, in_signs, signs, styled_text
+from xlmc.montecarlo.number_text import count_text, counted_text, in_signs, percent, signs, styled_text
 from xlmc.montecarlo.statistics import rank_correlation
 from xlmc.outputs.document.axes_drawing import TITLE, draw_on, dress, short
 from xlmc.outputs.document.colours import DARK, INK, LIGHT
@@ -34,7 +34,7 @@ from xlmc.outputs.document.parts import Bar, Bars, Chart, Line, Lines, Shape
 from xlmc.outputs.filter_effect import shapes
 from xlmc.outputs.histogram import Figure as Drawn
 from xlmc.outputs.histogram import figures_of, short_name
-from xlmc.outputs.summary import answer_text, central_text, percent
+from xlmc.outputs.summary import answer_text, central_text
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Final, NamedTuple
 
 import numpy as np
 
-from xlmc.analysis.results.statements import reach_text
-from xlmc.analysis.results.statements.in_words import discards_of, limits_text
+from xlmc.analysis.results.statements.in_words import limits_text
+from xlmc.analysis.results.statements.run_in_words import discards_of
+from xlmc.analysis.results.statements.significant_digits import reach_text
 from xlmc.engine.engine import UNDECIDED_RESULT
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
@@ -19,7 +20,7 @@ from xlmc.montecarlo.distributions.parameters import range_text
 from xlmc.montecarlo.loop.categories import labelled
 from xlmc.montecarlo.model.certain_filters import breakable
 from xlmc.montecarlo.model.draw_binding import base_point
-from xlmc.montecarlo.number_text import count_text, decimals_of, exact_digits, number_text
+from xlmc.montecarlo.number_text import count_text, decimals_of, exact_digits, number_text, percent
 from xlmc.montecarlo.rare.account import probability_text
 from xlmc.montecarlo.statistics import Estimate, complement, format_estimate
 from xlmc.montecarlo.statistics.estimate import finite
@@ -44,7 +45,6 @@ __all__ = [
     "estimate_text",
     "first_forecasts",
     "frequent_texts",
-    "percent",
     "question",
     "range_heading",
     "rejection_rows",
@@ -242,11 +242,6 @@ def range_heading(rows: Sequence[SummaryRow]) -> str:
     """`51 % range`, or `Central range` where forecasts have different ones; yes/no answers and texts have none."""
     shares = {row.share for row in rows if not row.is_share}
     return f"{percent(shares.pop())} range" if len(shares) == 1 else MIXED
-
-
-def percent(share: float) -> str:
-    """`0.51 -> 51 %`."""
-    return f"{number_text(100.0 * share, 12)} %"
 
 
 def estimate_text(estimate: Estimate) -> str:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from xlmc.analysis.results.statements import certainties, statements
+from xlmc.analysis.results.statements.sentences import certainties, statements
 from xlmc.api import Simulation, sensitivities
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.diagnostics.weighing import Weighting

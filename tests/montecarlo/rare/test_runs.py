@@ -16,7 +16,7 @@ from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
 from xlmc.analysis.results.record.make import fingerprint
-from xlmc.analysis.results.statements.in_words import sampling_sentence
+from xlmc.analysis.results.statements.run_in_words import sampling_sentence
 from xlmc.api import Simulation
 from xlmc.cli.simulate import show_run
 from xlmc.cli.simulate import simulate as command

@@ -9,7 +9,7 @@ import pytest
 from simulated import simulated
 
 from xlmc.analysis.results.record.make import fingerprint
-from xlmc.analysis.results.statements import statements
+from xlmc.analysis.results.statements.sentences import statements
 from xlmc.errors import FormulaError, SimulationError
 from xlmc.montecarlo.columns import column_store, on_disk
 from xlmc.montecarlo.simulation import simulate as module

@@ -29,7 +29,7 @@ from live_books import (
 )
 from openpyxl.worksheet.table import Table
 
-from xlmc.analysis.results.statements import statements
+from xlmc.analysis.results.statements.sentences import statements
 from xlmc.errors import XlmcError
 from xlmc.montecarlo.columns.column_store import on_disk
 from xlmc.montecarlo.definitions.run_options import RunOptions

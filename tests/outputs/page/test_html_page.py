@@ -10,7 +10,7 @@ from fewer_sheets import leave_out_fits
 from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
-from xlmc.analysis.results.statements import pairs_of
+from xlmc.analysis.results.statements.pairs import pairs_of
 from xlmc.api import Simulation
 from xlmc.errors import WorkbookError
 from xlmc.montecarlo.columns import column_store, on_disk

@@ -8,7 +8,7 @@ import pytest
 from packed_sheets import packed_sheets
 from simulated import simulated
 
-from xlmc.analysis.results.statements import certainties, statements
+from xlmc.analysis.results.statements.sentences import certainties, statements
 from xlmc.montecarlo import statistics
 
 SHEETS = ("Certainty", "Trials")  # the second of which the first counts in

@@ -9,7 +9,7 @@ import openpyxl
 import pytest
 from packed_sheets import packed_sheets
 
-from xlmc.analysis.results.statements import pairs_of
+from xlmc.analysis.results.statements.pairs import pairs_of
 from xlmc.outputs.sheets.styles import bounds
 
 DRAWN = ("Pairs", "Trials", "Curves")

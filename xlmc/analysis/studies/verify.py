@@ -20,7 +20,7 @@ from xlmc.excel.formula import Resolver, build_graph
 from xlmc.excel.formula.shape import shown_formula
 from xlmc.excel.workbook.workbook import CellValue, Workbook
 from xlmc.montecarlo.definitions.definitions import Definitions
-from xlmc.montecarlo.definitions.in_cells.calls import holds_call
+from xlmc.montecarlo.definitions.in_cells.suspects import holds_call
 from xlmc.montecarlo.model.needed import targets_of
 from xlmc.montecarlo.number_text import count_text
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,11 +17,13 @@ from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.feeds import Feeding
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.run_settings import USUAL, Settings
-from xlmc.montecarlo.definitions.scenarios import Scenario
 from xlmc.montecarlo.definitions.stating import Kind, Role, Which
 from xlmc.montecarlo.distributions import FAMILIES, Family
 from xlmc.montecarlo.number_text import exact_text
 from xlmc.montecarlo.sampling.draws import Draw
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.scenarios import Scenario
 
 __all__ = [
     "CUTOFFS",

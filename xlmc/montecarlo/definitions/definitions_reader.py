@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Container, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from types import MappingProxyType
-from typing import Final
+from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
@@ -17,6 +17,7 @@ from xlmc.montecarlo.definitions.crystal_ball.lost_data import remark_on_lost_da
 from xlmc.montecarlo.definitions.crystal_ball.precision_control import with_precision
 from xlmc.montecarlo.definitions.crystal_ball.refused import refused_forecasts, refused_rows
 from xlmc.montecarlo.definitions.definitions import (
+    Copula,
     Correlation,
     Decision,
     Definitions,
@@ -25,9 +26,7 @@ from xlmc.montecarlo.definitions.definitions import (
     Settings,
 )
 from xlmc.montecarlo.definitions.evidence import Evidence
-from xlmc.montecarlo.definitions.in_cells.calls import InCells, in_cell_forecasts, read_in_cells
-from xlmc.montecarlo.definitions.in_cells.joined_draws import in_cell_copulas, in_cell_correlations
-from xlmc.montecarlo.definitions.in_cells.stand_ins import simtable_scenarios
+from xlmc.montecarlo.definitions.in_cells.suspects import InCells, suspects
 from xlmc.montecarlo.definitions.number_styles import in_style
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.assumptions import read_assumptions
@@ -44,7 +43,6 @@ from xlmc.montecarlo.definitions.tables.reserved_tables import (
     definition_tables,
     likely_table,
 )
-from xlmc.montecarlo.definitions.tables.scenario_rows import read_scenarios
 from xlmc.montecarlo.definitions.tables.settings import read_settings
 from xlmc.montecarlo.definitions.tables.solves import read_solves, refuse_taken
 from xlmc.montecarlo.definitions.tables.table_rows import holds_rows
@@ -58,6 +56,9 @@ from xlmc.montecarlo.definitions.unavailable import (
 )
 from xlmc.montecarlo.definitions.xlrisk_sheet import read_xlrisk
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.scenarios import Scenario
 
 __all__ = ["COMPUTED_BY", "NO_SWITCHES", "number_style_of", "read_definitions"]
 
@@ -137,7 +138,12 @@ def _definitions(
     of_xlrisk = Findings()
     xlrisk = read_xlrisk(workbook, of_xlrisk)
     lognorm = settings.lognorm or ("@RISK" if xlrisk is None else "XLRisk")
-    calls = read_in_cells(workbook, computed, lognorm, uncertain, findings, tabulated)
+    if any(True for _ in suspects(workbook)) or uncertain.calls:
+        from xlmc.montecarlo.definitions.in_cells.calls import read_in_cells  # few workbooks have them
+
+        calls = read_in_cells(workbook, computed, lognorm, uncertain, findings, tabulated)
+    else:
+        calls = InCells()
     if xlrisk is not None and calls:
         settings = xlrisk.settings(settings, stated, of_xlrisk)
         findings.add(of_xlrisk)
@@ -156,12 +162,15 @@ def _definitions(
         workbook, tables["xlmc_correlations"], tables["xlmc_correlation_matrix"], names, frozen, findings
     )
     correlations = *correlations, *_take_pairs(correlations, dialogs.correlations, findings)
-    more = in_cell_correlations(workbook, calls.assumptions, calls.draws, correlations, findings)
-    copulas = in_cell_copulas(workbook, calls.assumptions, calls.draws, (*correlations, *more), findings)
+    more, copulas = _joined(workbook, calls, correlations, findings)
     if xlrisk is not None:
         forecasts = *forecasts, *xlrisk.forecasts(computed, central, answers, findings)
-    in_cells = in_cell_forecasts(workbook, calls, assumptions, computed, central, answers, findings)
-    forecasts = *forecasts, *dialogs.forecasts, *in_cells
+    forecasts = *forecasts, *dialogs.forecasts
+    if calls:
+        from xlmc.montecarlo.definitions.in_cells.calls import in_cell_forecasts
+
+        in_cells = in_cell_forecasts(workbook, calls, assumptions, computed, central, answers, findings)
+        forecasts = *forecasts, *in_cells
     filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
     _remark_on_calls(calls, settings, findings)
     decisions = read_decisions(workbook, tables["xlmc_decisions"], computed, findings)
@@ -191,8 +200,14 @@ def _definitions(
         _say_how_to_mark(workbook, findings)
     elif not (forecasts or refused):
         _refuse_none(workbook, "forecast", tables["xlmc_forecasts"], findings)
-    scenarios = tuple(simtable_scenarios(calls.simtables, findings))
+    scenarios: tuple[Scenario, ...] = ()
+    if calls.simtables:
+        from xlmc.montecarlo.definitions.in_cells.stand_ins import simtable_scenarios
+
+        scenarios = tuple(simtable_scenarios(calls.simtables, findings))
     if tables["xlmc_scenarios"]:
+        from xlmc.montecarlo.definitions.tables.scenario_rows import read_scenarios
+
         scenarios = *read_scenarios(workbook, tables, assumptions, (*filters, *own, *unused), findings), *scenarios
     return Definitions(
         assumptions=assumptions,
@@ -218,6 +233,18 @@ def _definitions(
         solves=solves,
         decisions=decisions,
     )
+
+
+def _joined(
+    workbook: Workbook, calls: InCells, correlations: Iterable[Correlation], findings: Findings
+) -> tuple[list[Correlation], tuple[Copula, ...]]:
+    """Return the correlations between draws in cells, beside those of tables, and the copulas that join them."""
+    if not calls.assumptions:
+        return [], ()
+    from xlmc.montecarlo.definitions.in_cells.joined_draws import in_cell_copulas, in_cell_correlations
+
+    more = in_cell_correlations(workbook, calls.assumptions, calls.draws, correlations, findings)
+    return more, in_cell_copulas(workbook, calls.assumptions, calls.draws, (*correlations, *more), findings)
 
 
 def _not_in(known: Iterable[Decision], more: Iterable[Decision]) -> Iterator[Decision]:

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import FormulaError
-from xlmc.excel.functions.number_format import FormatError, UnknownFormat, parse_format
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.number_text import (
     MOST_DIGITS,
@@ -280,6 +279,8 @@ class Form:
 
     def _moment(self, value: float) -> str:
         """Write a date or time, to the second; a number where it is none."""
+        from xlmc.excel.functions.number_format import FormatError, UnknownFormat, parse_format  # few books have dates
+
         rounded = round(value * _SECONDS_A_DAY) / _SECONDS_A_DAY
         for code in (self.moment_code, _DAY_AND_TIME):
             try:

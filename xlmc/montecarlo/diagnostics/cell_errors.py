@@ -13,7 +13,6 @@ from xlmc.engine.engine import TEXT_RESULT, Target
 from xlmc.errors import ErrorCode
 from xlmc.excel.address import Cell, InFormula
 from xlmc.montecarlo.definitions.definitions import Forecast
-from xlmc.montecarlo.loop.blocks import portions
 from xlmc.montecarlo.model.lowered_cells import lower_needed
 
 if TYPE_CHECKING:
@@ -85,6 +84,8 @@ def error_roots(model: CompiledModel, cells: Sequence[Cell], drawn: Sequence[Map
 
 def _first_error(model: CompiledModel, cell: Cell, drawn: Mapping[str, Floats]) -> dict[str, float] | None:
     """Return the draws of the first trial in which a cell is an error."""
+    from xlmc.montecarlo.loop.blocks import portions  # the base case needs no blocks
+
     trials = min((values.size for values in drawn.values()), default=0)
     evaluator = model.evaluator([Target(cell, cell)], _BLOCK)
     for part, block in portions(drawn, trials, _BLOCK):

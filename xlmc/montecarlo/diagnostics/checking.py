@@ -11,16 +11,15 @@ from numpy.typing import NDArray
 
 from xlmc.engine.engine import BLANK_RESULT, TEXT_RESULT
 from xlmc.errors import ErrorCode
-from xlmc.montecarlo.loop.blocks import portions
 from xlmc.montecarlo.model.draw_binding import base_point
 from xlmc.montecarlo.number_text import count_text, counted_text, exact_text, styled_text
-from xlmc.montecarlo.statistics import Estimate, proportion
 
 if TYPE_CHECKING:
     from xlmc.engine.engine import Column
     from xlmc.excel.address import Cell
     from xlmc.montecarlo.definitions.definitions import Check
     from xlmc.montecarlo.model.model import CompiledModel
+    from xlmc.montecarlo.statistics import Estimate
 
 __all__ = [
     "FAILING_SHARE",
@@ -113,6 +112,8 @@ class CheckResult:
     @property
     def share(self) -> Estimate:
         """The share of the accepted trials that fail the check."""
+        from xlmc.montecarlo.statistics import proportion  # the base case needs no statistics
+
         return proportion(self.failed, self.trials)
 
     @property
@@ -189,6 +190,8 @@ def _counted(checks: int) -> str:
 
 def _failures(model: CompiledModel, draws: Mapping[str, Floats], trials: int) -> tuple[NDArray[np.int64], list[str]]:
     """How many trials fail each check, and what the first of them holds."""
+    from xlmc.montecarlo.loop.blocks import portions  # the base case needs no blocks
+
     failed, value_text = np.zeros(len(model.checks), np.int64), [""] * len(model.checks)
     program = model.check_program()
     size = min(_BLOCK, program.largest_block)

@@ -6,14 +6,17 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
-from typing import Final, TypeVar
+from typing import TYPE_CHECKING, Final, TypeVar
 
 from xlmc.excel.address import Cell, host_of
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions import Assumption, Decision, Definitions, Filter, StatedNumber
-from xlmc.montecarlo.definitions.scenarios import Scenario, Typed
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.cell_forms import forms_of
+
+if TYPE_CHECKING:
+    from xlmc.montecarlo.definitions.forms import Form
+    from xlmc.montecarlo.definitions.scenarios import Scenario
 
 __all__ = ["in_their_forms", "with_stated_formulas"]
 
@@ -82,19 +85,11 @@ def in_their_forms(workbook: Workbook, definitions: Definitions) -> Definitions:
     """Return the definitions with the forms of those of their cells that show dates, percentages or money."""
     limits = (*definitions.filters, *definitions.forecast_filters)
     rows: list[Assumption | Filter | Decision] = [*definitions.assumptions, *limits, *definitions.decisions]
-    typed = [change.cell for each in definitions.scenarios for change in each.changes if isinstance(change, Typed)]
-    cells = [*dict.fromkeys([*(host_of(each.cell) for each in rows), *typed])]
+    cells = [*dict.fromkeys([*(host_of(each.cell) for each in rows), *_typed(definitions.scenarios)])]
     forms = dict(zip(cells, forms_of(workbook, cells), strict=True))
     known = {cell: form for cell, form in forms.items() if form.kind is not Kind.NUMBER}
     if not known:
         return definitions
-
-    def scenario(each: Scenario) -> Scenario:
-        changes = (
-            replace(change, form=known[change.cell]) if isinstance(change, Typed) and change.cell in known else change
-            for change in each.changes
-        )
-        return replace(each, changes=tuple(changes))
 
     def row(each: R) -> R:
         form = known.get(host_of(each.cell))
@@ -105,7 +100,7 @@ def in_their_forms(workbook: Workbook, definitions: Definitions) -> Definitions:
         assumptions=tuple(map(row, definitions.assumptions)),
         filters=tuple(map(row, definitions.filters)),
         forecast_filters=tuple(map(row, definitions.forecast_filters)),
-        scenarios=tuple(map(scenario, definitions.scenarios)),
+        scenarios=_scenarios_in_forms(definitions.scenarios, known),
         decisions=tuple(map(row, definitions.decisions)),
     )
 
@@ -120,3 +115,26 @@ def _stated(workbook: Workbook, cell: Cell, value: float | None) -> StatedNumber
     text = "" if formula is None else f"={formula.text}"
     whole = text if "!" in text or "[" in text else f"{cell}: {text}"
     return StatedNumber(value, whole if 0 < len(text) <= _LONGEST else str(cell))
+
+
+def _typed(scenarios: Sequence[Scenario]) -> list[Cell]:
+    """Return the cells that scenarios type values into."""
+    if not scenarios:
+        return []
+    from xlmc.montecarlo.definitions.scenarios import Typed  # few workbooks have them
+
+    return [change.cell for each in scenarios for change in each.changes if isinstance(change, Typed)]
+
+
+def _scenarios_in_forms(scenarios: Sequence[Scenario], known: Mapping[Cell, Form]) -> tuple[Scenario, ...]:
+    """Return the scenarios with these forms of the cells that values are typed into."""
+    if not scenarios:
+        return ()
+    from xlmc.montecarlo.definitions.scenarios import Change, Typed
+
+    def in_form(change: Change) -> Change:
+        if isinstance(change, Typed) and change.cell in known:
+            return replace(change, form=known[change.cell])
+        return change
+
+    return tuple(replace(each, changes=tuple(map(in_form, each.changes))) for each in scenarios)

@@ -14,11 +14,10 @@ from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
-from xlmc.montecarlo.number_text import fixed_text, number_text, two_digit_exponent
+from xlmc.montecarlo.number_text import fixed_text, number_text, percent, two_digit_exponent
 from xlmc.outputs.document.colours import COLOURS, DARK, GRID, INK, LIGHT
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Drawing, Line, Lines, Shape
 from xlmc.outputs.histogram import Figure
-from xlmc.outputs.summary import percent
 
 __all__ = [
     "FONT",

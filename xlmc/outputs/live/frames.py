@@ -13,8 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.analysis.results.record import make_record
-from xlmc.analysis.results.statements import statements
-from xlmc.analysis.results.statements.in_words import sampling_sentence
+from xlmc.analysis.results.statements.run_in_words import sampling_sentence
+from xlmc.analysis.results.statements.sentences import statements
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.montecarlo.definitions.forms import PLAIN, Form, span_text
 from xlmc.montecarlo.definitions.stating import Kind

@@ -10,12 +10,9 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
-from xlmc.analysis.results.statements.in_words import (
-    changes_text,
-    distribution_text,
-    limits_text,
-    status,
-)
+from xlmc.analysis.results.statements.in_words import distribution_text, limits_text
+from xlmc.analysis.results.statements.run_in_words import status
+from xlmc.analysis.results.statements.scenarios_in_words import changes_text
 from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Decision, Definitions, Filter, Parameter

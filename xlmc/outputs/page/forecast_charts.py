@@ -8,13 +8,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING
 
-from xlmc.montecarlo.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text, number_text, percent
 from xlmc.outputs.document.charts import shares_chart
 from xlmc.outputs.document.element import EMPTY, Html, element, join, void
 from xlmc.outputs.document.html_writer import estimate_html, picture_html, share_html
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.page.payload import counted_figures, most_values, overlays_of
-from xlmc.outputs.summary import SummaryRow, first_forecasts, frequent_texts, percent, shares_of
+from xlmc.outputs.summary import SummaryRow, first_forecasts, frequent_texts, shares_of
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult

@@ -24,12 +24,12 @@ from numpy.typing import NDArray
 
 from xlmc.montecarlo.columns import picked, release
 from xlmc.montecarlo.definitions.stating import Kind
-from xlmc.montecarlo.number_text import number_text, signs
+from xlmc.montecarlo.number_text import number_text, percent, signs
 from xlmc.montecarlo.statistics.estimate import t_quantile
 from xlmc.outputs.histogram import Figure
 from xlmc.outputs.page.fitted_curves import FittedCurve, fitted_curves
 from xlmc.outputs.page.second_run import partner_of
-from xlmc.outputs.summary import base_text, percent
+from xlmc.outputs.summary import base_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.forms import Form

@@ -6,14 +6,15 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from xlmc.analysis.results.statements.in_words import distribution_text, limits_text, status
+from xlmc.analysis.results.statements.in_words import distribution_text, limits_text
+from xlmc.analysis.results.statements.run_in_words import status
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.distributions.spelling import name_key
-from xlmc.montecarlo.number_text import count_text, counted_text, exact_text
+from xlmc.montecarlo.number_text import count_text, counted_text, exact_text, percent
 from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import estimate_html, share_html
-from xlmc.outputs.summary import SummaryRow, percent, summarise
+from xlmc.outputs.summary import SummaryRow, summarise
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult

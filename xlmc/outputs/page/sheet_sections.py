@@ -6,7 +6,8 @@ from collections.abc import Collection, Iterable, Iterator
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.record import Entry, Record, RecordTable, Section, Value
-from xlmc.analysis.results.statements.in_words import distribution_text, status
+from xlmc.analysis.results.statements.in_words import distribution_text
+from xlmc.analysis.results.statements.run_in_words import status
 from xlmc.excel.workbook.printable import printable
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.number_text import styled_text, whole_text

@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from xlmc.analysis.results.statements.in_words import distribution_text, status
+from xlmc.analysis.results.statements.in_words import distribution_text
+from xlmc.analysis.results.statements.run_in_words import status
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document import cells

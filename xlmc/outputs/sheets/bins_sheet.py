@@ -6,12 +6,12 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from xlmc.montecarlo.number_text import percent
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.colours import DARK, LIGHT
 from xlmc.outputs.histogram import Figure, Histogram
 from xlmc.outputs.sheets.styles import Reference, across, finish, upwards
-from xlmc.outputs.summary import percent
 
 if TYPE_CHECKING:
     from xlsxwriter.chart_column import ChartColumn

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from xlmc.analysis.results.statements import meaning, stated_range, statements
+from xlmc.analysis.results.statements.sentences import meaning, stated_range, statements
 from xlmc.montecarlo.definitions.stating import NOT_ROUNDED
 from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.montecarlo.statistics import proportion

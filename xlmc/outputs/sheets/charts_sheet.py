@@ -10,14 +10,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from xlmc.montecarlo.number_text import counted_text
+from xlmc.montecarlo.number_text import counted_text, percent
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.histogram import Figure, varying
 from xlmc.outputs.sheets.bins_sheet import BinsAt, histogram_chart
 from xlmc.outputs.sheets.curve_charts import MOST, cumulative_charts, group_by_units, overlay_chart, trend_chart
 from xlmc.outputs.sheets.curves_sheet import Curves
 from xlmc.outputs.sheets.page import ROW
-from xlmc.outputs.summary import first_forecasts, percent
+from xlmc.outputs.summary import first_forecasts
 
 if TYPE_CHECKING:
     from xlsxwriter.chart import Chart

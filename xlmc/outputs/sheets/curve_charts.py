@@ -20,6 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo.columns import release
+from xlmc.montecarlo.number_text import percent
 from xlmc.montecarlo.statistics import percentiles
 from xlmc.montecarlo.statistics.sample import Sample
 from xlmc.outputs.document import cells
@@ -28,7 +29,6 @@ from xlmc.outputs.document.colours import DARK, INK, LIGHT
 from xlmc.outputs.histogram import Figure, Histogram, multiples
 from xlmc.outputs.sheets.curves_sheet import SHARE, Curves, TableAt
 from xlmc.outputs.sheets.styles import COLOURS, across, axis_format, finish, straight, upwards
-from xlmc.outputs.summary import percent
 
 if TYPE_CHECKING:
     from xlsxwriter.chart_area import ChartArea

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 
 import numpy as np
 
-from xlmc.analysis.results.statements import Pair, pairs_of
+from xlmc.analysis.results.statements.pairs import Pair, pairs_of
 from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown

@@ -68,8 +68,8 @@ def _title(each: ForecastComparison) -> str:
 
 def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
     from xlmc.analysis.studies.comparison.verdicts import amount, is_chance, tolerance_text
-    from xlmc.montecarlo.number_text import number_text
-    from xlmc.outputs.summary import estimate_text, percent
+    from xlmc.montecarlo.number_text import number_text, percent
+    from xlmc.outputs.summary import estimate_text
 
     found, form = each.difference, each.difference.form
     rows = []

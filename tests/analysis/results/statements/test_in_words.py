@@ -5,15 +5,15 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from xlmc.analysis.results.statements.in_words import (
-    changes_text,
     distribution_text,
     evidence_text,
     limits_text,
     notes_text,
     parameters_text,
     plain_text,
-    status,
 )
+from xlmc.analysis.results.statements.run_in_words import status
+from xlmc.analysis.results.statements.scenarios_in_words import changes_text
 from xlmc.excel.address import Area, Cell
 from xlmc.montecarlo.definitions.definitions import Assumption, DataRange, Definitions, Filter, StatedNumber
 from xlmc.montecarlo.definitions.evidence import Evidence

@@ -11,11 +11,11 @@ from xlmc.errors import FormulaError
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.workbook.workbook import CellContent, Formula
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
-from xlmc.montecarlo.definitions.in_cells.calls import holds_call
 from xlmc.montecarlo.definitions.in_cells.crystal_ball_functions import CRYSTAL_BALL
 from xlmc.montecarlo.definitions.in_cells.random_functions import INVERSES
 from xlmc.montecarlo.definitions.in_cells.result_functions import RESULTS
 from xlmc.montecarlo.definitions.in_cells.risk_functions import ALTERNATES, RISK
+from xlmc.montecarlo.definitions.in_cells.suspects import holds_call
 
 A1, A2 = Cell("S", 1, 1), Cell("S", 2, 1)
 HERE = Cell("S", 9, 9)

@@ -7,7 +7,7 @@ import pytest
 from simulated import simulated
 
 from xlmc.errors import ErrorCode, XlmcError
-from xlmc.montecarlo.definitions.in_cells.calls import holds_call
+from xlmc.montecarlo.definitions.in_cells.suspects import holds_call
 from xlmc.montecarlo.model.loading import load
 
 CALLS = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.analysis.results.statements.in_words import changes_text
+from xlmc.analysis.results.statements.scenarios_in_words import changes_text
 from xlmc.excel.address import parse_address
 from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.scenarios import Band, Drawn, Frozen, Limits, Numbers, Range, Typed

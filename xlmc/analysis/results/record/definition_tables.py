@@ -12,14 +12,13 @@ import numpy as np
 from xlmc.analysis.results.record.record_parts import RecordTable, Section, Value
 from xlmc.analysis.results.statements.in_words import (
     cutoffs_text,
-    discards_of,
     evidence_text,
     given_text,
     limits_text,
     notes_text,
     parameters_text,
-    status,
 )
+from xlmc.analysis.results.statements.run_in_words import discards_of, status
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.stating import Role
 from xlmc.montecarlo.model.cell_forms import content_in, forms_of

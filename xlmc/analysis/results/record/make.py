@@ -29,7 +29,7 @@ from xlmc.analysis.results.record.errors_met import errors_met
 from xlmc.analysis.results.record.needed_cells import cell_section, needed_contents, structure_section
 from xlmc.analysis.results.record.record_parts import Entry, Record, RecordTable, Section
 from xlmc.analysis.results.record.settings_table import settings_section
-from xlmc.analysis.results.statements.in_words import errors_text, generator_text, method_text
+from xlmc.analysis.results.statements.run_in_words import errors_text, generator_text, method_text
 from xlmc.excel.own_functions import OwnFunctions, the_same_functions
 from xlmc.excel.workbook.inject import original_hash
 from xlmc.montecarlo.columns import holds_nan, parts

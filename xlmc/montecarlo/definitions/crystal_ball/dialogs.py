@@ -43,7 +43,7 @@ from xlmc.montecarlo.definitions.definitions import (
     Forecast,
     Parameter,
 )
-from xlmc.montecarlo.definitions.in_cells.calls import holds_call
+from xlmc.montecarlo.definitions.in_cells.suspects import holds_call
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.decisions import values_between
 from xlmc.montecarlo.definitions.tables.identity import Claims

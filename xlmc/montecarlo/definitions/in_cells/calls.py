@@ -12,90 +12,30 @@ of rank correlations.
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Iterator
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable
+from dataclasses import replace
 from typing import Final
 
 from xlmc.errors import DefinitionError, FormulaError
 from xlmc.excel.address import Cell, InFormula
-from xlmc.excel.formula import Resolver, ir
+from xlmc.excel.formula import Resolver
 from xlmc.excel.workbook.labels import Label, label_of
-from xlmc.excel.workbook.lazy_sheets import LazySheets
 from xlmc.excel.workbook.workbook import Formula, Workbook
 from xlmc.montecarlo.definitions.computed import Computed
 from xlmc.montecarlo.definitions.definitions import Assumption, Forecast
 from xlmc.montecarlo.definitions.in_cells.call_arguments import number_of
-from xlmc.montecarlo.definitions.in_cells.other_programs import of_another_program
-from xlmc.montecarlo.definitions.in_cells.reading import CellDraw, CellReading, Output
-from xlmc.montecarlo.definitions.in_cells.result_functions import ResultCall, mentions_result
+from xlmc.montecarlo.definitions.in_cells.reading import CellReading
+from xlmc.montecarlo.definitions.in_cells.result_functions import mentions_result
+from xlmc.montecarlo.definitions.in_cells.suspects import InCells, suspects, without_texts
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.tables.identity import Claims
 from xlmc.montecarlo.definitions.tables.table_rows import static_value
 from xlmc.montecarlo.distributions.spelling import by_names, name_key
 from xlmc.montecarlo.number_text import number_text
 
-__all__ = ["InCells", "holds_call", "in_cell_forecasts", "read_in_cells"]
+__all__ = ["in_cell_forecasts", "read_in_cells"]
 
-_CALL: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*(?:RAND|RANDBETWEEN|RANDARRAY|Risk\w+|CB\.\w+)\s*\(", re.IGNORECASE)
-_OTHER: Final = re.compile(r"(?<![\w.])(?:_xl\w+\.)*((?:Psi|Vose)\w+)\s*\(", re.IGNORECASE)
 _OUTPUT: Final = re.compile(r"RiskOutput\s*\(", re.IGNORECASE)
-_TEXTS: Final = re.compile(r'"(?:[^"]|"")*"')
-_MARKS: Final = (b"rand", b"risk", b"cb.", b"psi", b"vose")
-_OF_CRYSTAL_BALL: Final = "cb_data_"
-"""The hidden sheet that Crystal Ball adds; its formulas are Crystal Ball's own."""
-
-
-def holds_call(text: str) -> bool:
-    """Whether a formula holds a call that draws, shows results, or belongs to Crystal Ball, @RISK or their like."""
-    found = _without_texts(text)
-    return _CALL.search(found) is not None or any(of_another_program(name.upper()) for name in _OTHER.findall(found))
-
-
-def _without_texts(text: str) -> str:
-    return _TEXTS.sub('""', text)
-
-
-@dataclass(slots=True)
-class InCells:
-    """What the calls in cells say.
-
-    Attributes:
-        assumptions: in the order of sheets, rows and columns.
-        outputs: the cells that are marked as outputs, by their cell.
-        rewritten: the formulas with assumptions instead of calls; or why a cell cannot be computed.
-        draws: name of an assumption -> what its call says beside the distribution.
-        results: the cells that show results -> what they ask for.
-        shown: the cells that show results, or numbers of distributions -> their formula, with the latter.
-        unavailable: the cells that should show results and cannot -> why.
-        idle: property functions without an effect -> the first cell that has one.
-        lognorms: the cells with `RiskLognorm`.
-        simtables: the cells with `RiskSimtable` -> the values of each.
-        taken: the calls that rows of a table stand for.
-        shifted: the draws that are shifted, as cells -> the cell whose formula shifts them, and what it then says.
-    """
-
-    assumptions: list[Assumption] = field(default_factory=list)
-    outputs: dict[Cell, Output] = field(default_factory=dict)
-    rewritten: dict[Cell, ir.Expression | FormulaError] = field(default_factory=dict)
-    draws: dict[str, CellDraw] = field(default_factory=dict)
-    results: dict[Cell, list[ResultCall]] = field(default_factory=dict)
-    shown: dict[Cell, ir.Expression] = field(default_factory=dict)
-    unavailable: dict[Cell, str] = field(default_factory=dict)
-    idle: dict[str, Cell] = field(default_factory=dict)
-    lognorms: list[Cell] = field(default_factory=list)
-    simtables: dict[Cell, list[tuple[ir.Expression, ...]]] = field(default_factory=dict)
-    taken: set[Cell] = field(default_factory=set)
-    shifted: dict[Cell, tuple[Cell, ir.Expression]] = field(default_factory=dict)
-
-    def __bool__(self) -> bool:
-        return bool(self.rewritten)
-
-    @property
-    def refused(self) -> Iterator[FormulaError]:
-        """Why cells that show no results cannot be computed."""
-        for cell, found in self.rewritten.items():
-            if isinstance(found, FormulaError) and cell not in self.results and cell not in self.unavailable:
-                yield found
 
 
 def read_in_cells(
@@ -120,7 +60,7 @@ def read_in_cells(
     resolver = Resolver(workbook, claims.cells)
     bases: dict[Cell, float | None] = {}
     rows = {call: cell for call, (_, cell) in claims.calls.items()}
-    for cell, formula in _suspects(workbook):
+    for cell, formula in suspects(workbook):
         reading = CellReading(workbook, computed, lognorm, bases, cell, rows, tabulated)
         try:
             found.rewritten[cell] = reading.rewrite(resolver.formula(cell, formula))
@@ -129,7 +69,7 @@ def read_in_cells(
             found.rewritten[cell] = refused = _about(error, cell, formula)
             if _OUTPUT.search(formula.text) and not reading.asked:  # others are reported if anything needs the cell
                 findings.problems.append(DefinitionError(refused.message, where=cell, hint=refused.hint))
-            if reading.unavailable or (not reading.asked and mentions_result(_without_texts(formula.text))):
+            if reading.unavailable or (not reading.asked and mentions_result(without_texts(formula.text))):
                 found.unavailable[cell] = reading.unavailable or refused.message
         if reading.asked:
             found.results[cell] = reading.asked
@@ -216,49 +156,6 @@ def _about(error: FormulaError | DefinitionError, cell: Cell, formula: Formula) 
         text = formula.text if error.text is None else error.text
         return FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
     return FormulaError(f"{error.message} ({error.where})", where=cell, hint=error.hint, text=formula.text)
-
-
-def _suspects(workbook: Workbook) -> Iterator[tuple[Cell, Formula]]:
-    """Yield the formula cells that hold calls, sheet by sheet, row by row; sheets that cannot hold one are not parsed.
-
-    A cell also holds a call by a defined name that stands for one.
-    """
-    sheets, named = workbook.sheets, _names_of_calls(workbook)
-    words = [*_MARKS, *(name.encode() for name in named)]
-    names: Iterable[str] = sheets
-    if isinstance(sheets, LazySheets) and all(word.isascii() for word in words):
-        names = sheets.mentioning(words)
-    any_name = _any_of(named)
-    for name in names:
-        if name.casefold() == _OF_CRYSTAL_BALL:
-            continue
-        formulas = {at: content.formula for at, content in sheets[name].cells.items() if content.formula is not None}
-        for at in sorted(formulas):
-            formula = formulas[at]
-            if holds_call(formula.text) or (any_name and any_name.search(formula.text)):
-                yield Cell(name, *at), formula
-
-
-def _names_of_calls(workbook: Workbook) -> set[str]:
-    """Return the defined names, in small letters, that stand for calls, also by other names."""
-    found: set[str] = set()
-    while True:
-        any_name = _any_of(found)
-        more = {
-            name.name.lower()
-            for name in workbook.names
-            if holds_call(name.text) or (any_name and any_name.search(name.text))
-        }
-        if more <= found:
-            return found
-        found |= more
-
-
-def _any_of(names: Collection[str]) -> re.Pattern[str] | None:
-    """Compile a pattern that finds any of these names in a formula."""
-    if not names:
-        return None
-    return re.compile(rf"(?<![\w.\\])(?:{'|'.join(map(re.escape, sorted(names)))})(?![\w.])", re.IGNORECASE)
 
 
 def in_cell_forecasts(

@@ -67,7 +67,7 @@ class CellReading:
         host: the cell.
         draws: by their position in the formula.
         trees: of the arguments that are expressions, by the cells that stand for them.
-        output, asked, idle, has_lognorm, taken: see `in_cells.InCells`.
+        output, asked, idle, has_lognorm, taken: see `suspects.InCells`.
         simtables: the values of each `RiskSimtable`.
         shifted: the draws that are shifted, as cells -> with what is added.
         shown: the formula of a cell that shows results, or numbers of distributions, with these; None for another.

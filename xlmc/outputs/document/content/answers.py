@@ -7,9 +7,10 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.record.errors_met import lost_sentences
-from xlmc.analysis.results.statements import meaning, statements
-from xlmc.analysis.results.statements.in_words import sampling_sentence
+from xlmc.analysis.results.statements.run_in_words import sampling_sentence
+from xlmc.analysis.results.statements.sentences import meaning, statements
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
+from xlmc.montecarlo.number_text import percent
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE, Shown
 from xlmc.outputs.document.measured import Measured
@@ -21,7 +22,6 @@ from xlmc.outputs.summary import (
     end_texts,
     error_sentence,
     frequent_texts,
-    percent,
     question,
     range_heading,
     summarise,

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.results.record.definition_tables import correlations_met
-from xlmc.analysis.results.statements.in_words import distribution_text, status
+from xlmc.analysis.results.statements.in_words import distribution_text
+from xlmc.analysis.results.statements.run_in_words import status
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.number_text import count_text, counted_text, number_text
 from xlmc.outputs.document import cells

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from xlmc.analysis.results.statements import certainties
+from xlmc.analysis.results.statements.sentences import certainties
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.measured import Measured

@@ -6,7 +6,8 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from xlmc.analysis.results.record.errors_met import ErrorMet, errors_met
-from xlmc.analysis.results.statements.in_words import REJECTED_SENTENCE, discards_of, limits_text
+from xlmc.analysis.results.statements.in_words import limits_text
+from xlmc.analysis.results.statements.run_in_words import REJECTED_SENTENCE, discards_of
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.montecarlo.statistics import Estimate, proportion

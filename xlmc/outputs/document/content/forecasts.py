@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from xlmc.montecarlo.number_text import count_text, counted_text
+from xlmc.montecarlo.number_text import count_text, counted_text, percent
 from xlmc.outputs.document.charts import shares_chart
 from xlmc.outputs.document.drawings import forecast_drawing
 from xlmc.outputs.document.parts import Block, Figure, Paragraph
 from xlmc.outputs.histogram import figures_of, not_drawn
-from xlmc.outputs.summary import answer_text, central_text, percent
+from xlmc.outputs.summary import answer_text, central_text
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult

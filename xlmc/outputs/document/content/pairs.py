@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.statements import PAIRS, Pair, pairs_of
+from xlmc.analysis.results.statements.pairs import PAIRS, Pair, pairs_of
 from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document.cells import NONE
 from xlmc.outputs.document.measured import Measured

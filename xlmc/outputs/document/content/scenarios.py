@@ -5,15 +5,14 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.statements.in_words import changes_text
+from xlmc.analysis.results.statements.scenarios_in_words import changes_text
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import count_text, percent
 from xlmc.montecarlo.simulation.simulation import FEW
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Block, Content, Paragraph, Table
-from xlmc.outputs.summary import percent
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.scenario_answers import ForecastAnswer, ScenarioAnswers

@@ -207,12 +207,13 @@ def _stated(forecast: Forecast) -> tuple[str, str, str]:
 
 def scenario_table(definitions: Definitions) -> None:
     """Print what each scenario changes; nothing where there are none."""
+    if not definitions.scenarios:
+        return
     from xlmc.analysis.results.statements.scenarios_in_words import changes_text
     from xlmc.cli.printing import table
 
     changes = [(each.name, changes_text(each, definitions), each.note) for each in definitions.scenarios]
-    if changes:
-        table("Scenarios", ("Name", "Changes", "Note"), changes)
+    table("Scenarios", ("Name", "Changes", "Note"), changes)
 
 
 def _drawn_with(model: CompiledModel | None, correlation: Correlation) -> str:

@@ -33,7 +33,16 @@ from xlmc.excel.formula.reference_text import (
     prefix,
 )
 
-__all__ = ["QUOTED", "TOKENS", "Invocation", "Leaf", "opens_array", "tokens_at", "without_line_breaks"]
+__all__ = [
+    "QUOTED",
+    "TOKENS",
+    "Invocation",
+    "Leaf",
+    "absolute_reference",
+    "opens_array",
+    "tokens_at",
+    "without_line_breaks",
+]
 
 _LINE_BREAK_IN_TEXT = "\0"  # no XML holds it, so no text of a workbook does
 
@@ -114,6 +123,22 @@ class _Reference(Leaf):
             raise ForeignFormulaError
         sheet, _, book = prefix(self.attr)
         return ir.Name(text, sheet, book)  # no cell, so a name may look like it: `YAW1`
+
+
+def absolute_reference(text: str) -> ir.Reference | None:
+    """Return the node of a text that is one reference with a `$`, as most defined names are: `Model!$D$29`.
+
+    None for any other text, and for a reference that is not on a sheet.
+    """
+    found = _Reference._re.fullmatch(text) if "$" in text else None
+    if found is None or "$" not in found["name"]:
+        return None
+    groups = {key: value for key, value in found.groupdict().items() if value is not None}
+    first, _, last = groups["name"].partition(":")
+    corners = corner(first), corner(last) if last else None
+    if all(end is None or is_on_the_sheet(end) for end in corners):
+        return ir.Reference(*corners, *prefix(groups))
+    return None
 
 
 class _Name(Leaf):

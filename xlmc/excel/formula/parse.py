@@ -30,7 +30,15 @@ from schedula import EMPTY, DispatcherError
 
 from xlmc.errors import ErrorCode, FormulaError
 from xlmc.excel.formula import ir
-from xlmc.excel.formula.formula_tokens import QUOTED, Invocation, Leaf, opens_array, tokens_at, without_line_breaks
+from xlmc.excel.formula.formula_tokens import (
+    QUOTED,
+    Invocation,
+    Leaf,
+    absolute_reference,
+    opens_array,
+    tokens_at,
+    without_line_breaks,
+)
 from xlmc.excel.formula.reference_text import prefix
 
 __all__ = ["compile_with_formulas", "parse", "parse_cell"]
@@ -156,8 +164,11 @@ def parse(text: str) -> ir.Expression:
             hint="split it over several cells",
             text=f"{text[:60]}…",
         )
-    parser = _Parser()
     flat = without_line_breaks(text).strip()
+    reference = absolute_reference(flat)
+    if reference is not None:
+        return reference
+    parser = _Parser()
     try:
         _, builder = parser.ast("=" + flat)
     except ForeignFormulaError:

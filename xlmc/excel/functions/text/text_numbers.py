@@ -7,7 +7,6 @@ from decimal import ROUND_HALF_UP, Context, Decimal
 from typing import Final
 
 from xlmc.errors import ErrorCode, FormulaError
-from xlmc.excel.functions.number_format import FormatError, UnknownFormat, parse_format
 from xlmc.excel.functions.number_text import parse_number, parse_plain_number, round_to_15_digits
 from xlmc.excel.functions.per_element import object_text, per_element, per_object
 from xlmc.excel.functions.registry import Anything, Kind, Logical, Number, Text, excel
@@ -26,6 +25,8 @@ def text(value: object, code: object, *, date1904: bool = False) -> object:
     Raises:
         FormulaError: the format asks for numerals, or for names of months and days, that are not known here.
     """
+    from xlmc.excel.functions.number_format import FormatError, UnknownFormat, parse_format  # few books call it
+
     try:
         form = parse_format(object_text(code))
         number = _number_to_write(value, date1904)
@@ -67,6 +68,8 @@ def _write_rounded(number: float, decimals: float, whole: str, negative: str) ->
     size = float(round_to_15_digits(number).quantize(Decimal(1).scaleb(-digits), context=_WIDE))
     if math.isinf(size):
         return ErrorCode.NUM
+    from xlmc.excel.functions.number_format import parse_format
+
     text = parse_format(whole + "." * (digits > 0) + "0" * digits).number(abs(size))
     return negative.format(text) if size < 0 else text
 

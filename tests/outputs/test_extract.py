@@ -167,7 +167,7 @@ def test_it_takes_no_more_memory_for_more_trials(model, tmp_path, ending, monkey
     for n in (8 * PART, 8 * PART, 200 * PART):  # the first one pays for what is imported and kept
         large = replace(
             run,
-            trial_index=np.arange(n),
+            accepted_index=np.arange(n),
             inputs=dict.fromkeys(run.inputs, np.full(n, 0.1)),
             forecasts=dict.fromkeys(run.forecasts, np.full(n, 0.1)),
         )

@@ -107,12 +107,12 @@ class BlockMemory:
     """Memory that a block's columns may be written to, `(block,)` each.
 
     Attributes:
-        accepted: for the accepted trials, int64.
+        accepted: for the accepted trials, int64; None where they are not kept.
         draws: assumption -> doubles; empty where no draws are kept.
         forecasts: doubles, one for each of the first forecasts, or for all.
     """
 
-    accepted: NDArray[np.int64]
+    accepted: NDArray[np.int64] | None
     draws: Mapping[str, Floats]
     forecasts: Sequence[Floats]
 

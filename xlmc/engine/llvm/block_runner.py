@@ -134,8 +134,9 @@ class NativeBlockRunner:
         self._rows = dict(zip(self._names, rows, strict=True))
         self._memory = Memory(parts.slots, self._chunk)
         self._trials, self._survivors = np.arange(block), np.arange(self._chunk)
+        self._accepted = np.empty(block, np.int64)
         self._block_memory = BlockMemory(
-            np.empty(block, np.int64),
+            None,
             dict(zip(self._names, _aligned_rows(len(self._names), block), strict=True)),
             [*_aligned_rows(len(parts.forecasts), block)],
         )
@@ -228,12 +229,13 @@ class NativeBlockRunner:
         alone: Counts,
     ) -> AcceptedBlock:
         parts = self._parts
+        accepted = self._accepted if block_memory.accepted is None else block_memory.accepted
         f, rejecting = len(parts.filters), list(parts.rejecting)
         together, only = np.zeros((f, f), np.int64), np.zeros(f, np.int64)
         if rejecting:
             together[np.ix_(rejecting, rejecting)], only[rejecting] = pairs, alone
         return AcceptedBlock(
-            np.add(self._trials[:m], start, out=block_memory.accepted[:m]),
+            np.add(self._trials[:m], start, out=accepted[:m]),
             {name: block_memory.draws[name][:m] for name in self._names} if inputs else {},
             [
                 np.broadcast_to(float(each.value), m)

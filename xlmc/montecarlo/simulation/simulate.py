@@ -228,7 +228,7 @@ def _with_search(plain: RunResult, found: Search, most_inputs: int, in_memory: i
     drawn = gathered.simulation(plain.settings, plain.plan, plain.stopped)
     return replace(
         plain,
-        trial_index=drawn.trial_index,
+        accepted_index=drawn.accepted_index,
         inputs=drawn.inputs,
         forecasts=drawn.forecasts,
         faults=drawn.faults,
@@ -236,6 +236,11 @@ def _with_search(plain: RunResult, found: Search, most_inputs: int, in_memory: i
         labels=drawn.labels,
         rare=replace(found.account, kept=gathered.accepted, faulty=gathered.lost),
     )
+
+
+_MOST_AS_RANGE: Final = 1 << 23
+"""Accepted trials whose numbers are made when they are asked for; of more they are kept, on the disk where that is
+where columns go."""
 
 
 class _Gathered:
@@ -256,6 +261,7 @@ class _Gathered:
         types: dict[Hashable, np.dtype[Any]] = {("trial", 0): whole, **dict.fromkeys(columns, real)}
         self._keeper = ColumnStore(types, expected, filled=not model.filters, in_memory=in_memory)
         self._prior_trials, self._prior_is_inputs = 0, True
+        self._all_accepted = True
         self._tally = FilterTally.empty(len(model.filters))
         self._invalid: Counter[str] = Counter()
         self._faults: list[Counter[str]] = [Counter() for _ in model.forecasts]
@@ -281,7 +287,7 @@ class _Gathered:
         self.lost += block.lost
 
     def _keep(self, block: Block) -> None:
-        self._keeper.add(("trial", 0), block.accepted)
+        self._keep_accepted(block)
         left = max(0, self._keep_inputs - self.accepted)
         for name, values in block.draws.items():
             self._keeper.add(("input", name), values[:left])
@@ -292,6 +298,15 @@ class _Gathered:
                 values = self._labels[number].renumbered(values, block.labels[number])
             self._keeper.add(("forecast", number), values)
         self._keeper.write_if_full()
+
+    def _keep_accepted(self, block: Block) -> None:
+        """Keep the numbers of the accepted trials, but none as long as all are accepted: a range says as much."""
+        more = block.accepted.size
+        if self._all_accepted and (more < block.trials or self.accepted + more > _MOST_AS_RANGE):
+            self._keeper.add(("trial", 0), np.arange(self.accepted))
+            self._all_accepted = False
+        if not self._all_accepted:
+            self._keeper.add(("trial", 0), block.accepted)
 
     def _keep_prior(self, block: Block, prior: Mapping[str, NDArray[np.float64]], left: int) -> None:
         """Keep the draws of all trials; as long as every trial is accepted they are the draws that are kept anyway."""
@@ -312,7 +327,7 @@ class _Gathered:
         """Return the memory that the next block's columns go to."""
         reserve, inputs = self._keeper.reserve, self._inputs.values() if self.wants_inputs else ()
         return BlockMemory(
-            reserve(("trial", 0), self._piece),
+            None if self._all_accepted else reserve(("trial", 0), self._piece),
             {name: reserve((kind, name), self._piece) for kind, name in inputs},
             [reserve(key, self._piece) for key in self._forecasts.values()],
         )
@@ -320,6 +335,8 @@ class _Gathered:
     @property
     def accepted_trials(self) -> NDArray[np.int64]:
         """`(m,)` the numbers of the accepted trials so far."""
+        if self._all_accepted:
+            return np.arange(self.accepted)
         return self._keeper.columns({"trial": ("trial", 0)})["trial"]
 
     def forecast(self, number: int) -> NDArray[np.float64]:
@@ -334,7 +351,7 @@ class _Gathered:
             plan=plan,
             block=self._block,
             trials=self.trials,
-            trial_index=self.accepted_trials,
+            accepted_index=range(self.accepted) if self._all_accepted else self.accepted_trials,
             inputs=self._keeper.columns({a.name: self._inputs[a.name] for a in self._model.live}),
             prior=self._prior_columns({a.name: prior[a.name] for a in self._model.live}),
             forecasts=self._keeper.columns(self._forecasts),

@@ -114,6 +114,15 @@ class ChangedFrom:
         return f"These are not results of {self.name} as it is, but of a copy with changes: {changed}."
 
 
+def _as_array(index: NDArray[np.int64] | range) -> NDArray[np.int64]:
+    return np.arange(index.start, index.stop) if isinstance(index, range) else index
+
+
+def _replicates(plan: SamplingPlan, index: Callable[[], NDArray[np.int64]]) -> Replicates | None:
+    """Return the replicate of each accepted trial; see `SamplingPlan.replicate_of`."""
+    return plan.replicate_of(index()) if plan.size else None
+
+
 def _trials(count: int) -> str:
     return f"{counted_text(count, 'trial')} {'was' if count == 1 else 'were'}"
 
@@ -126,7 +135,8 @@ class RunResult:
         model, settings, block: what it is a function of.
         plan: the sampling method, and how it divides the trials into replicates.
         trials: how many were run; where accepted ones are rare, drawn plainly, which the counts are of.
-        trial_index: `(m,)` the accepted ones, counted from 0; where they are rare, in the order they were drawn in.
+        accepted_index: `(m,)` the accepted ones, counted from 0; where they are rare, in the order they were drawn in.
+            A range where all of not too many are accepted; `trial_index` is always an array.
         inputs: assumption -> its accepted draws, `(m,)`, or of the first accepted trials where not all were asked for.
         prior: assumption -> its draws before filtering, of the first trials.
         forecasts: forecast -> `(m,)`, NaN where it has no number.
@@ -150,7 +160,7 @@ class RunResult:
     plan: SamplingPlan
     block: int
     trials: int
-    trial_index: NDArray[np.int64]
+    accepted_index: NDArray[np.int64] | range
     inputs: Mapping[str, Floats]
     prior: Mapping[str, Floats]
     forecasts: Mapping[str, Floats]
@@ -188,7 +198,7 @@ class RunResult:
                 f,
                 partial(self.forecasts.__getitem__, f.name),
                 self.faults[f.name],
-                partial(self.plan.replicate_of, self.trial_index),
+                partial(_replicates, self.plan, self._index),
                 self.discards.get(f.name, Counter()),
                 partial(_weights, self._weigh),
                 still=f.cell in self.model.still,
@@ -220,8 +230,17 @@ class RunResult:
         return self.plan.replicate_of(self.trial_index)
 
     @property
+    def trial_index(self) -> NDArray[np.int64]:
+        """`(m,)` the accepted trials; see `accepted_index`."""
+        return self._index()
+
+    @cached_property
+    def _index(self) -> Callable[[], NDArray[np.int64]]:
+        return cache(partial(_as_array, self.accepted_index))
+
+    @property
     def accepted(self) -> int:
-        return int(self.trial_index.size)
+        return len(self.accepted_index)
 
     @property
     def repeating(self) -> RunOptions:

@@ -126,7 +126,7 @@ def test_saving_takes_little_memory(run, tmp_path):
         trials=n,
         settings=replace(run.settings, trials=n),
         plan=replace(run.plan, trials=n),
-        trial_index=np.arange(n),
+        accepted_index=np.arange(n),
         inputs=dict.fromkeys(run.inputs, np.ones(n)),
         forecasts=dict.fromkeys(run.forecasts, np.ones(n)),
     )

@@ -310,7 +310,7 @@ def _simulation(found: Document, model: CompiledModel, columns: _Columns) -> Run
         plan=plan,
         block=max(1, whole(found["block"], "the size of its blocks")),
         trials=trials,
-        trial_index=index,
+        accepted_index=index,
         inputs=inputs,
         prior=prior,
         forecasts=forecasts,

@@ -277,13 +277,18 @@ class ColumnStore:
         self._types, self._filled = dict(types), filled
         self._files = {key: f"{number}.column" for number, key in enumerate(types)}
         self._places = {key: _Place(self._files[key], dtype) for key, dtype in types.items()}
-        self._expected = expected or {}
-        self._together = sum(types[key].itemsize * rows for key, rows in self._expected.items())
+        self._expected: dict[Hashable, int] = {}
+        self.expect(expected or {})
         self._arrays = {key: np.empty(0, dtype) for key, dtype in types.items()}
         self._sizes = dict.fromkeys(types, 0)
         self._bytes = 0
         self._folder: Folder | None = None
         remove_abandoned_folders()
+
+    def expect(self, rows: Mapping[Hashable, int]) -> None:
+        """Take it that columns will have about so many numbers: what they are made for, as long as they have none."""
+        self._expected |= rows
+        self._together = sum(self._types[key].itemsize * rows for key, rows in self._expected.items())
 
     def add(self, key: Hashable, values: Array) -> None:
         """Put `(m,)` values at the end of a column; those that were written to `reserve` are there already.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections import Counter
 from collections.abc import Callable, Collection, Generator, Hashable, Iterator, Mapping
@@ -238,6 +239,9 @@ def _with_search(plain: RunResult, found: Search, most_inputs: int, in_memory: i
     )
 
 
+_MORE_THAN_SEEN: Final = 4.0
+"""Standard errors by which more trials may be accepted than the first block lets expect."""
+
 _MOST_AS_RANGE: Final = 1 << 23
 """Accepted trials whose numbers are made when they are asked for; of more they are kept, on the disk where that is
 where columns go."""
@@ -255,11 +259,10 @@ class _Gathered:
         self._prior = {name: ("prior", name) for name in model.draws}
         self._forecasts = {f.name: ("forecast", number) for number, f in enumerate(model.forecasts)}
         columns = (*self._inputs.values(), *self._prior.values(), *self._forecasts.values())
-        expected: dict[Hashable, int] = {("trial", 0): trials, **dict.fromkeys(self._forecasts.values(), trials)}
-        expected |= dict.fromkeys(self._inputs.values(), min(keep_inputs + piece, trials))
-        expected |= dict.fromkeys(self._prior.values(), min(PRIOR_TRIALS, trials))
+        expected = self._expected(trials) | dict.fromkeys(self._prior.values(), min(PRIOR_TRIALS, trials))
         types: dict[Hashable, np.dtype[Any]] = {("trial", 0): whole, **dict.fromkeys(columns, real)}
         self._keeper = ColumnStore(types, expected, filled=not model.filters, in_memory=in_memory)
+        self._most = trials
         self._prior_trials, self._prior_is_inputs = 0, True
         self._all_accepted = True
         self._tally = FilterTally.empty(len(model.filters))
@@ -286,7 +289,15 @@ class _Gathered:
         self.accepted += block.accepted.size
         self.lost += block.lost
 
+    def _expected(self, accepted: int) -> dict[Hashable, int]:
+        """Return how many numbers the columns of accepted trials have, if so many are accepted."""
+        found: dict[Hashable, int] = {("trial", 0): accepted, **dict.fromkeys(self._forecasts.values(), accepted)}
+        return found | dict.fromkeys(self._inputs.values(), min(self._keep_inputs + self._piece, accepted))
+
     def _keep(self, block: Block) -> None:
+        if not self.trials and block.accepted.size < block.trials:  # as many more as chance may add, and some
+            share = (block.accepted.size + _MORE_THAN_SEEN * math.sqrt(block.accepted.size + 1.0)) / block.trials
+            self._keeper.expect(self._expected(math.ceil(min(share, 1.0) * self._most)))
         self._keep_accepted(block)
         left = max(0, self._keep_inputs - self.accepted)
         for name, values in block.draws.items():

@@ -178,7 +178,7 @@ def test_a_file_is_known_by_two_hashes():
 
 def _run(index, inputs, forecasts):
     return SimpleNamespace(
-        accepted_index=np.array(index),
+        trial_index=np.array(index),
         inputs={str(n): np.array(values) for n, values in enumerate(inputs)},
         forecasts={str(n): np.array(values) for n, values in enumerate(forecasts)},
     )

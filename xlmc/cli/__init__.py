@@ -53,6 +53,17 @@ Where to begin:
 """What a person does first; click does not wrap what follows `\\b`."""
 
 
+def _be_quiet(_context: click.Context, _option: click.Parameter, quiet: bool) -> None:
+    if quiet:
+        be_quiet()
+
+
+_quiet_option = click.option(
+    "-q", "--quiet", is_flag=True, expose_value=False, callback=_be_quiet, help="Print no notes and no progress."
+)
+"""Of every command: what `xlmc -q` says, where people look for it."""
+
+
 class _Imported(MutableMapping[str, click.Command]):
     """Commands by their names, each imported when it is looked up: most of the start would be theirs."""
 
@@ -63,7 +74,7 @@ class _Imported(MutableMapping[str, click.Command]):
     def __getitem__(self, name: str) -> click.Command:
         if name not in self._found:
             module, _, command = self._names[name].partition(".")
-            self._found[name] = getattr(import_module(f"xlmc.cli.{module}"), command)
+            self._found[name] = _quiet_option(getattr(import_module(f"xlmc.cli.{module}"), command))
         return self._found[name]
 
     def __setitem__(self, name: str, command: click.Command) -> None:
@@ -161,8 +172,7 @@ def xlmc(context: click.Context, no_kept_code: bool, quiet: bool) -> None:
     """Monte Carlo simulation of Excel workbooks, without Excel."""
     if no_kept_code:
         os.environ["XLMC_KEEP_CODE"] = "0"
-    if quiet:
-        be_quiet()
+    be_quiet(quiet)
     if context.invoked_subcommand is None:
         say(context.get_help())
 

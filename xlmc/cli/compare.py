@@ -14,7 +14,6 @@ from xlmc.cli.options import (
     engine_option,
     functions_option,
     jobs_option,
-    quiet_option,
     seed_option,
     tolerance_option,
     trials_option,
@@ -48,7 +47,6 @@ UNDECIDED = 1
 @jobs_option
 @click.option("--no-causes", is_flag=True, help="Do not look for what makes the difference.")
 @study_options(STUDY)
-@quiet_option
 @functions_option
 def compare(
     first: Path,
@@ -63,7 +61,6 @@ def compare(
     jobs: int,
     no_causes: bool,
     output: StudyOutput,
-    quiet: bool,
     functions: OwnFunctions | None,
 ) -> None:
     """Run the workbooks FIRST and SECOND over the same trials, and say whether the simpler one is enough."""
@@ -78,7 +75,7 @@ def compare(
     books = load(first, functions=functions), load(second, functions=functions)
     use_number_style(books[0].definitions.settings.number_style)
     files = output.files(first, second, functions=functions)
-    with step_line(quiet) as tell:
+    with step_line() as tell:
         found = comparison.compare(
             *books,
             tolerance,

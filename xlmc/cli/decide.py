@@ -33,7 +33,6 @@ def decide(
     book: Path,
     table: tuple[str, ...],
     output: StudyOutput,
-    quiet: bool,
     functions: OwnFunctions | None,
     **run: Any,
 ) -> None:
@@ -43,7 +42,7 @@ def decide(
     from xlmc.outputs.studies.decide import decide_report
 
     model, files = output.open(book, functions, of_run=True)
-    with step_line(quiet) as tell:
+    with step_line() as tell:
         found = study.decide(model, table, **run, tell=tell)
     report = decide_report(found)
     written = output.give(report, files)

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from xlmc.cli.options import FilePath, WholeNumber, functions_option, quiet_option, seed_option
+from xlmc.cli.options import FilePath, WholeNumber, functions_option, seed_option
 from xlmc.cli.study_output import NOT_TO_BE_USED, StudyOutput, end_early, study_options
 
 if TYPE_CHECKING:
@@ -42,7 +42,6 @@ __all__ = ["methods"]
 @click.option("--quick", is_flag=True, help="Few and short runs: a first look, in about half a minute.")
 @seed_option("the reference; the runs have others", "the book's")
 @study_options("the figure (.png), a workbook (.xlsx), a document (.pdf, .docx), a page (.html), JSON (.json)")
-@quiet_option
 @functions_option
 def methods(
     book: Path,
@@ -53,7 +52,6 @@ def methods(
     quick: bool,
     seed: int | None,
     output: StudyOutput,
-    quiet: bool,
     functions: OwnFunctions | None,
 ) -> None:
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
@@ -66,7 +64,7 @@ def methods(
     given = {name: value for name, value in asked.items() if value is not None}
     if quick:
         given = quick_settings(given)
-    with step_line(quiet) as tell:
+    with step_line() as tell:
         found = study(model, accuracy=accuracy, seed=seed, tell=tell, **given)
     report = methods_report(found, figures=files.show_figures)
     advice = (line for each in recommendation(found) for line in (each, ""))

@@ -65,7 +65,6 @@ def optimise(
     allow_lost: float,
     runs: float,
     output: StudyOutput,
-    quiet: bool,
     functions: OwnFunctions | None,
     **run: Any,
 ) -> None:
@@ -78,7 +77,7 @@ def optimise(
     from xlmc.outputs.studies.optimise import optimise_report
 
     model, files = output.open(book, functions, of_run=True)
-    with step_line(quiet) as tell:
+    with step_line() as tell:
         found = study(
             model,
             maximise=maximise,

@@ -23,7 +23,6 @@ __all__ = [
     "functions_option",
     "jobs_option",
     "number_style_option",
-    "quiet_option",
     "run_options",
     "seed_option",
     "tolerance_option",
@@ -192,9 +191,6 @@ def seed_option(of: str, default: str = "the book's, else 999") -> Callable[[F],
     """Make the option for the seed of `the run`, `each run`."""
     return click.option("--seed", type=WholeNumber(0), help=f"Seed of {of}.  [default: {default}]")
 
-
-quiet_option = click.option("--quiet", is_flag=True, help="Print no notes of what is running.")
-"""The option of studies."""
 
 engine_option = _setting_option(SETTINGS["engine"])
 

@@ -35,9 +35,9 @@ def errors_line(standing: Progress) -> str:
 
 
 @contextmanager
-def progress_bar(quiet: bool) -> Iterator[OnProgress | None]:
+def progress_bar() -> Iterator[OnProgress | None]:
     """Draw a bar and the standard errors below it on stderr while the trials run, if there is a terminal to draw on."""
-    if quiet or is_quiet() or not on_terminal(err=True):
+    if is_quiet() or not on_terminal(err=True):
         yield None
         return
     from rich.console import Console, RenderableType
@@ -66,9 +66,9 @@ def progress_bar(quiet: bool) -> Iterator[OnProgress | None]:
 
 
 @contextmanager
-def step_line(quiet: bool) -> Iterator[Callable[[str], None] | None]:
+def step_line() -> Iterator[Callable[[str], None] | None]:
     """Show a line on stderr that says which step is running; gives None if there is no terminal to show it on."""
-    if quiet or is_quiet() or not on_terminal(err=True):
+    if is_quiet() or not on_terminal(err=True):
         yield None
         return
     from rich.console import Console

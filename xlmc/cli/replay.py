@@ -37,7 +37,6 @@ _LONGEST = 60
 )
 @jobs_option
 @click.option("--json", "as_json", is_flag=True, help="Print the comparison as JSON.")
-@click.option("--quiet", is_flag=True, help="Print no progress bar.")
 @number_style_option
 @functions_option
 def replay(
@@ -45,7 +44,6 @@ def replay(
     books: tuple[Path, ...],
     jobs: int,
     as_json: bool,
-    quiet: bool,
     functions: OwnFunctions | None,
 ) -> None:
     """Repeat the run recorded in RESULTS, a result workbook or a saved run, from the definitions in the same file."""
@@ -53,7 +51,7 @@ def replay(
     from xlmc.cli.progress_bar import progress_bar
     from xlmc.outputs import replay as replaying
 
-    with progress_bar(quiet) as progress:
+    with progress_bar() as progress:
         found = replaying.replay(recorded, books=books, jobs=jobs, progress=progress, functions=functions)
     if found.repeated is not None:
         use_number_style(found.repeated.settings.number_style)

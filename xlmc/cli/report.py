@@ -28,7 +28,6 @@ NOT_TO_BE_USED = 1
 @click.argument("second", metavar="[RUN]", required=False, type=FilePath())
 @output_options("RUN-results.xlsx", without=["save_run"])
 @detailed_option
-@click.option("--quiet", is_flag=True, help="Print no notes.")
 @number_style_option
 @functions_option
 def report(
@@ -39,7 +38,6 @@ def report(
     overwrite: bool,
     contents: ReportContents,
     detailed: int | None,
-    quiet: bool,
     functions: OwnFunctions | None,
 ) -> None:
     """Write the results of a saved run, without simulating again: the same as when it was run.
@@ -71,7 +69,7 @@ def report(
                 " xlmc simulate BOOK -o RUN.xlmcrun."
             )
         asked._replace(name=run.name if seal is None else seal.book).check(run)  # before the run
-        found = _repeated(run, quiet, functions)
+        found = _repeated(run, functions)
     else:
         found = open_run(run, functions=functions)
         if seal is None or not seal.whole:
@@ -79,8 +77,7 @@ def report(
     if detailed is not None:
         found = replace(found, settings=replace(found.settings, detailed=detailed))
     use_number_style(found.settings.number_style)
-    if not quiet:
-        notices(found.model.notices)
+    notices(found.model.notices)
     default = None if asked.files else results_beside(run, copy_ending(found.model.path))
     outputs = asked._replace(name=found.model.workbook.name, default=default).check(found.model.path)
     outputs.check_against(found.model)
@@ -95,7 +92,7 @@ def report(
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
 
-def _repeated(results: Path, quiet: bool, functions: OwnFunctions | None) -> RunResult:
+def _repeated(results: Path, functions: OwnFunctions | None) -> RunResult:
     """Return the run that a result workbook records.
 
     Raises:
@@ -104,5 +101,5 @@ def _repeated(results: Path, quiet: bool, functions: OwnFunctions | None) -> Run
     from xlmc.cli.progress_bar import progress_bar
     from xlmc.outputs.replay import recorded_run
 
-    with progress_bar(quiet) as progress:
+    with progress_bar() as progress:
         return recorded_run(results, progress=progress, functions=functions)

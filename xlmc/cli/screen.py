@@ -57,7 +57,6 @@ def screen(
     forecast: tuple[str, ...],
     ends: bool,
     output: StudyOutput,
-    quiet: bool,
     functions: OwnFunctions | None,
     **run: Any,
 ) -> None:
@@ -69,7 +68,7 @@ def screen(
     from xlmc.outputs.studies.screen import printed, screen_report
 
     model, files = output.open(book, functions, of_run=True)
-    with step_line(quiet) as tell:
+    with step_line() as tell:
         found = screening.screen(
             model,
             tolerance,

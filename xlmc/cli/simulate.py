@@ -19,7 +19,7 @@ from xlmc.cli.options import (
     run_options,
 )
 from xlmc.cli.output_options import Outputs, ReportContents, output_options, results_beside
-from xlmc.cli.terminal import INTERRUPTED, paragraph, say
+from xlmc.cli.terminal import INTERRUPTED, is_quiet, paragraph, say
 from xlmc.cli.writing import NOT_WRITTEN
 
 if TYPE_CHECKING:
@@ -50,7 +50,6 @@ _MOST_MOVED = 4
 @click.option("--workers", type=WholeNumber(1), help="Workers of --scheduler local.  [default: one for each processor]")
 @click.option("--in-place", is_flag=True, help="Write the result sheets into BOOK itself.")
 @output_options("BOOK-results.xlsx")
-@click.option("--quiet", is_flag=True, help="Print no progress bar and no notes.")
 @functions_option
 def simulate(
     book: Path,
@@ -60,7 +59,6 @@ def simulate(
     also: tuple[Path, ...],
     overwrite: bool,
     contents: ReportContents,
-    quiet: bool,
     functions: OwnFunctions | None,
     **asked: Any,
 ) -> None:
@@ -89,17 +87,16 @@ def simulate(
     scenarios = bool(asked["scenarios"])
     if scenarios:
         refuse_no_scenarios(model)
-    if not quiet:
-        notices([*model.notices, *_hints(model, asked["trials"], asked["engine"])])
-    with progress_bar(quiet) as progress:
+    notices([*model.notices, *_hints(model, asked["trials"], asked["engine"])])
+    with progress_bar() as progress:
         keep_inputs = None if outputs.trials else KEPT_INPUTS
         run = run_model(
             model,
             RunOptions.of(**asked, keep_inputs=keep_inputs, keep_interrupted=True),
             progress=progress,
-            tell=None if quiet else lambda sentence: say(sentence, err=True),
+            tell=None if is_quiet() else lambda sentence: say(sentence, err=True),
         )
-    run, answers = _with_scenarios(run, asked["jobs"], quiet)
+    run, answers = _with_scenarios(run, asked["jobs"])
     written, lines = outputs.write(run)  # before the answer is printed, so that no terminal can cost a run
     show_run(run)
     for line in lines:
@@ -117,7 +114,7 @@ def simulate(
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
 
-def _with_scenarios(run: RunResult, jobs: int, quiet: bool) -> tuple[RunResult, Sequence[ScenarioAnswers]]:
+def _with_scenarios(run: RunResult, jobs: int) -> tuple[RunResult, Sequence[ScenarioAnswers]]:
     """Return the answers of the scenarios; after Ctrl-C none, and the run as if made without them."""
     from dataclasses import replace
 
@@ -127,7 +124,7 @@ def _with_scenarios(run: RunResult, jobs: int, quiet: bool) -> tuple[RunResult, 
     try:
         if run.stopped.interrupted and run.settings.scenarios:
             raise KeyboardInterrupt
-        with step_line(quiet) as tell:
+        with step_line() as tell:
             return run, scenario_answers(run, jobs=jobs, tell=tell)
     except KeyboardInterrupt:
         say(

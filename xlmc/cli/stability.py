@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from xlmc.cli.options import FilePath, functions_option, jobs_option, quiet_option, seed_option, trials_option
+from xlmc.cli.options import FilePath, functions_option, jobs_option, seed_option, trials_option
 from xlmc.cli.study_output import (
     NOT_TO_BE_USED,
     STUDY_OF_A_RUN,
@@ -29,7 +29,6 @@ __all__ = ["stability"]
 @seed_option("the run")
 @jobs_option
 @study_options(STUDY_OF_A_RUN)
-@quiet_option
 @functions_option
 def stability(
     book: Path,
@@ -38,7 +37,6 @@ def stability(
     seed: int | None,
     jobs: int,
     output: StudyOutput,
-    quiet: bool,
     functions: OwnFunctions | None,
 ) -> None:
     """Find where BOOK loses digits, or its numbers are not what they seem, within the ranges of its assumptions."""
@@ -48,7 +46,7 @@ def stability(
     from xlmc.outputs.studies.stability import stability_report
 
     model, files = output.open(book, functions, of_run=True)
-    with step_line(quiet) as tell:
+    with step_line() as tell:
         found = study.stability(model, trials=trials, seed=seed, jobs=jobs, tell=tell)
     report = stability_report(found, all_cells)
     written = output.give(report, files)

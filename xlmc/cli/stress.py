@@ -53,7 +53,6 @@ def stress(
     assumption: tuple[str, ...],
     forecast: tuple[str, ...],
     output: StudyOutput,
-    quiet: bool,
     functions: OwnFunctions | None,
     **run: Any,
 ) -> None:
@@ -63,7 +62,7 @@ def stress(
     from xlmc.outputs.studies.stress import stress_report
 
     model, files = output.open(book, functions, of_run=True)
-    with step_line(quiet) as tell:
+    with step_line() as tell:
         found = study.stress(
             model,
             share=share,

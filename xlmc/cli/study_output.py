@@ -15,7 +15,6 @@ from xlmc.cli.options import (
     functions_option,
     jobs_option,
     number_style_option,
-    quiet_option,
     seed_option,
     trials_option,
 )
@@ -142,7 +141,7 @@ def study_run_options(of: str, kinds: str = STUDY_OF_A_RUN) -> Callable[[Command
         of: `the run`, `each run`.
         kinds: as for `study_options`.
     """
-    outputs = study_options(kinds), quiet_option, functions_option
+    outputs = study_options(kinds), functions_option
     return with_options(trials_option(of), seed_option(of), engine_option, jobs_option, *outputs)
 
 

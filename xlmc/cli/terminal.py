@@ -76,8 +76,7 @@ _READER_GONE: Final = (errno.EPIPE, errno.EINVAL)
 
 def prepare() -> None:
     """Let stdout and stderr write something readable instead of what their encoding lacks, and print notes."""
-    global _quiet
-    _quiet = False
+    be_quiet(False)
     for stream in (sys.stdout, sys.stderr):
         reconfigure = getattr(stream, "reconfigure", None)
         if reconfigure is not None:
@@ -90,10 +89,10 @@ _RED: Final = ("xlmc: ", "problem: ")
 """What begins the messages about mistakes."""
 
 
-def be_quiet() -> None:
-    """Print no notes any more."""
+def be_quiet(quiet: bool = True) -> None:
+    """Print no notes any more, or print them again."""
     global _quiet
-    _quiet = True
+    _quiet = quiet
 
 
 def is_quiet() -> bool:

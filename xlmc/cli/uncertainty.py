@@ -13,7 +13,6 @@ from xlmc.cli.options import (
     engine_option,
     functions_option,
     jobs_option,
-    quiet_option,
     seed_option,
 )
 from xlmc.cli.study_output import STUDY, StudyOutput, conclude, study_options
@@ -53,7 +52,6 @@ __all__ = ["uncertainty"]
 @engine_option
 @jobs_option
 @study_options(f"{STUDY}, the accepted trials, each with its outer draw (.csv, .parquet)")
-@quiet_option
 @functions_option
 def uncertainty(
     book: Path,
@@ -67,7 +65,6 @@ def uncertainty(
     engine: str | None,
     jobs: int,
     output: StudyOutput,
-    quiet: bool,
     functions: OwnFunctions | None,
 ) -> None:
     """Tell how uncertain the distributions of BOOK's answers are: what is not known is drawn in an outer loop, what
@@ -79,7 +76,7 @@ def uncertainty(
     from xlmc.outputs.study_report import TWO_LOOPS_NOT_KEPT
 
     model, files = output.open(book, functions, of_run=True, not_kept=TWO_LOOPS_NOT_KEPT)
-    with step_line(quiet) as tell:
+    with step_line() as tell:
         found = study.uncertainty(
             model,
             outer=outer,

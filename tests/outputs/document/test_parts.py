@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from xlmc.outputs.document.parts import Table
+from xlmc.outputs.document.parts import HALF, Document, Drawing, Figure, Heading, Paragraph, Table
 
 
 def test_columns_are_wide_enough_for_their_longest_words():
@@ -27,3 +27,30 @@ def test_a_table_of_too_many_long_words_shares_the_page_out_by_them():
     table = Table("", tuple("ABCDEFGH"), rows, widths=tuple(range(1, 9)))
     assert table.relative_widths == pytest.approx([1 / 8] * 8)
     assert table.crowded == pytest.approx(8 * 19 / 105)
+
+
+@pytest.mark.parametrize(
+    ("widths", "rows"),
+    [
+        ([HALF, HALF], [2]),
+        ([HALF, HALF, HALF], [2, 1]),
+        ([160.0, HALF, HALF], [0, 2]),
+        ([HALF, 160.0, HALF], [1, 0, 1]),
+        ([160.0, 160.0], [0, 0]),
+    ],
+)
+def test_two_narrow_figures_stand_side_by_side(widths, rows):
+    svg = '<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9"/>'
+    figures = [Figure(Drawing(svg, "nothing", width), f"figure {number}") for number, width in enumerate(widths)]
+    laid_out = Document("", "", None, "", "", (), (Heading("a"), *figures, Paragraph("z"))).with_next
+    assert [after for _, after in laid_out[:1]] == figures[:1]
+    assert laid_out[-1] == (Paragraph("z"), None)
+    assert [len(each) if isinstance(each, tuple) else 0 for each, _ in laid_out[1:-1]] == rows
+    assert [each for row, _ in laid_out[1:-1] for each in (row if isinstance(row, tuple) else [row])] == figures
+
+
+def test_the_lines_of_a_table_are_counted():
+    words = "a reason that takes several lines where its column is narrow, as it is here " * 3
+    table = Table("", ("Name", "Because"), (("one", "short"), ("two", words), ("a\nb\nc", "short")), widths=(1.0, 1.0))
+    assert len(words) > 4 * 105 / 2
+    assert table.lines == 1 + 5 + 3

@@ -10,7 +10,7 @@ from xlmc.api import Simulation
 from xlmc.errors import SimulationError
 from xlmc.outputs.document import Wanted
 from xlmc.outputs.document.build import build
-from xlmc.outputs.document.parts import Document, Drawing, Figure, Heading, Paragraph
+from xlmc.outputs.document.parts import HALF, Document, Drawing, Figure, Heading, Paragraph
 
 docx = pytest.importorskip("docx")
 pypdf = pytest.importorskip("pypdf")
@@ -103,7 +103,7 @@ def test_a_few_forecasts_have_large_figures_and_many_have_small_ones(make):
         return [block.drawing.width for block in found.blocks if isinstance(block, Figure)]
 
     assert widths(4) == [160.0] * 4
-    assert widths(5) == [100.0] * 5
+    assert widths(5) == [HALF] * 5
 
 
 def test_every_kind_of_block_can_be_empty_of_pictures():

@@ -16,7 +16,7 @@ from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.spelling import name_key
 from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.case_fields import case_of
-from xlmc.outputs.document.material import Material
+from xlmc.outputs.document.material import Material, same_answers
 from xlmc.outputs.document.parts import Block, Document, Figure, Heading, Table
 from xlmc.outputs.document.sections import SECTIONS
 
@@ -88,7 +88,8 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
     workbook = simulation.model.workbook
     case = case_of(workbook, wanted.case)
     scenario_answers(simulation)  # cells may ask about them, and warnings tell of those that cannot
-    material = Material(simulation, make_record(simulation, command), _forecasts(wanted, simulation.model))
+    names = _forecasts(wanted, simulation.model)
+    material = Material(simulation, make_record(simulation, command), names, same_answers(simulation, names))
     blocks: list[Block] = []
     words = vocabulary_of(workbook)
     for name, section in SECTIONS.items():

@@ -85,11 +85,10 @@ class _Writer:
                     run = self._file.add_paragraph().add_run(printable(text))
                     run.font.name = "Courier New"
                     run.font.size = _points(_SMALL)
-                case Figure(drawing, caption):
-                    paragraph = self._file.add_paragraph()
-                    paragraph.paragraph_format.keep_with_next = True
-                    self._picture(paragraph, drawing)
-                    self._caption(caption)
+                case Figure():
+                    self._figure(self._file, block)
+                case tuple():
+                    self._side_by_side(block)
                 case Table():
                     if block.title:
                         self._file.add_heading(printable(block.title), 1)
@@ -144,9 +143,28 @@ class _Writer:
         run.font.size, run.bold = _points(size), bold or None
         return made
 
-    def _caption(self, text: str, *, before: bool = False) -> None:
-        paragraph = self._file.add_paragraph(printable(text), style="Caption")
+    def _caption(self, text: str, *, before: bool = False, within: Any = None) -> None:
+        paragraph = (within or self._file).add_paragraph(printable(text), style="Caption")
         paragraph.paragraph_format.keep_with_next = before
+
+    def _figure(self, within: Any, figure: Figure, paragraph: Any = None) -> None:
+        """Write a figure and its caption, in the file or in a cell of it whose first paragraph is given."""
+        paragraph = paragraph or within.add_paragraph()
+        paragraph.paragraph_format.keep_with_next = True
+        self._picture(paragraph, figure.drawing)
+        self._caption(figure.caption, within=within)
+
+    def _side_by_side(self, figures: tuple[Figure, ...]) -> None:
+        """Write one or two figures in the cells of a table without lines."""
+        from docx.shared import Mm
+
+        table = self._file.add_table(rows=1, cols=2)
+        table.autofit = False
+        _narrow_cells(table)
+        _keep_whole(table.rows[0], repeated=False)
+        for cell, figure in zip(table.rows[0].cells, figures, strict=False):
+            cell.width = Mm(self._room / 2)
+            self._figure(cell, figure, cell.paragraphs[0])
 
     def _picture(self, paragraph: Any, drawing: Picture) -> None:
         from docx.shared import Mm

@@ -16,8 +16,8 @@ from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.loop.forecast_result import ForecastResult
 from xlmc.montecarlo.number_text import fixed_text, number_text, percent, two_digit_exponent
 from xlmc.outputs.document.colours import COLOURS, DARK, GRID, INK, LIGHT
-from xlmc.outputs.document.parts import Bar, Bars, Chart, Drawing, Line, Lines, Shape
-from xlmc.outputs.histogram import Figure
+from xlmc.outputs.document.parts import HALF, Bar, Bars, Chart, Drawing, Line, Lines, Shape
+from xlmc.outputs.histogram import Figure, Histogram
 
 __all__ = [
     "FONT",
@@ -39,8 +39,6 @@ _LONGEST, _BESIDE = 40, 20
 _FILLS = {"dark": DARK, "light": LIGHT}
 _ROUND_STEPS = (1.0, 2.0, 5.0, 10.0)
 _ROOM = 0.03
-_NARROW = 100.0
-"""Millimetres of a forecast's figure where there are many."""
 _DASHES = ' stroke-dasharray="4 3"'
 
 Floats = NDArray[np.float64]
@@ -52,10 +50,12 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
     Args:
         figure: the forecast.
         result: its trials.
-        width: in millimetres; a narrow one is lower, too, so that a page has room for four.
+        width: in millimetres; a narrow one has fewer details, so that its letters are hardly smaller.
     """
-    left, right, top = 62.0, 556.0, 14.0
-    middle, bottom = (176.0, 306.0) if width > _NARROW else (120.0, 214.0)
+    half = width <= HALF
+    left, top, whole = 62.0, 14.0, 420.0 if half else 570.0
+    right = whole - 14.0
+    middle, bottom = (106.0, 186.0) if half else (176.0, 306.0)
     bins, answer = figure.bins, figure.answer
     first, last = float(bins.edges[0]), float(bins.upper_edges[-1])
     across = Scale(first, last, left, right, bins.width * bins.step)
@@ -88,16 +88,30 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
     mean = across(_near(answer.mean.value, first, last))
     found += [line_to(mean, top, mean, bottom, INK, 1.0)]
     found += [line_to(left, bottom, right, bottom, INK)]
-    for edge, label in zip([*bins.edges, bins.upper_edges[-1]], [*bins.labels, bins.last_label], strict=True):
-        if label:
-            x = across(float(edge) + (0.0 if bins.names is None else bins.width / 2.0))
-            found += [line_to(x, bottom, x, bottom + 4, INK), text_at(x, bottom + 15, label)]
+    middles = 0.0 if bins.names is None else bins.width / 2.0
+    edges = [(across(float(edge) + middles), label) for edge, label in _labelled(bins)]
+    for x, label in _apart(edges):
+        found += [line_to(x, bottom, x, bottom + 4, INK), text_at(x, bottom + 15, label)]
     found.append(text_at((left + right) / 2, bottom + 32, answer.units or "value"))
     said = (
         f"{answer.name}: above, how many accepted trials lie in each interval; below, the share of them that is not "
         f"above each value. Dark: the central {percent(answer.share)}. The vertical line is the mean."
     )
-    return drawing(found, 570.0, bottom + 40, said, width)
+    return drawing(found, whole, bottom + 40, said, width)
+
+
+def _labelled(bins: Histogram) -> list[tuple[float, str]]:
+    """Return the edges of bins that have a label, each with its label."""
+    edges, labels = [*bins.edges, bins.upper_edges[-1]], [*bins.labels, bins.last_label]
+    return [(float(edge), label) for edge, label in zip(edges, labels, strict=True) if label]
+
+
+def _apart(marks: list[tuple[float, str]]) -> list[tuple[float, str]]:
+    """Return as many marks, equally far from each other, as leave their texts room beside each other."""
+    if len(marks) < 2:
+        return marks
+    wide = _CHARACTER * (max(len(text) for _, text in marks) + 1)
+    return marks[:: max(math.ceil(wide / (marks[1][0] - marks[0][0])), 1)]
 
 
 def drawn(chart: Chart) -> Drawing:

@@ -9,6 +9,7 @@ cell that holds one brings its format along.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from datetime import date
@@ -21,6 +22,7 @@ from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.summary import Phrase
 
 __all__ = [
+    "HALF",
     "NUMBERS",
     "Bar",
     "Bars",
@@ -46,6 +48,9 @@ __all__ = [
 
 Paper = str
 """`a4` or `letter`."""
+
+HALF: Final = 81.0
+"""The width of a figure that stands beside another on paper, in millimetres."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -251,6 +256,11 @@ class Figure:
     drawing: Picture
     caption: str
 
+    @property
+    def is_half(self) -> bool:
+        """Whether paper has room for another one beside it."""
+        return self.drawing.width <= HALF
+
 
 @dataclass(frozen=True, slots=True)
 class Table:
@@ -318,22 +328,38 @@ class Table:
         return max(_LETTERS / self.crowded, _SMALLEST)
 
     @property
-    def _longest_words(self) -> list[int]:
+    def lines(self) -> int:
+        """About how many lines of text its rows take."""
+        room = [max(_LINE * share / sum(self.relative_widths) - _BESIDE, 1.0) for share in self.relative_widths]
+        return sum(max(map(_lines, row, room), default=1) for row in self.rows)
+
+    @property
+    def _longest_words(self) -> list[float]:
         """`(c,)` characters of the longest word in each column, with the space beside it; a number with its error is
         one word where the letters of the table need not be too small for that.
         """
         whole = self._words(whole=True)
         return whole if sum(whole) <= _SMALL * _LINE else self._words(whole=False)
 
-    def _words(self, *, whole: bool) -> list[int]:
-        found = [max(map(len, head.split()), default=0) for head in self.heads] or [0] * self.columns
-        at_right = self.at_right if whole else ()
+    def _words(self, *, whole: bool) -> list[float]:
+        found = [float(max(map(len, head.split()), default=0)) for head in self.heads] or [0.0] * self.columns
+        at_right = self.at_right
         for row in self.rows:
             for index, cell in enumerate(row):
                 text = cell_text(cell) if not isinstance(cell, Drawing | Chart) else ""
-                words = [text] if index in at_right else text.split()
-                found[index] = max(found[index], max((len(word) for word in words if len(word) < _WIDEST), default=0))
+                words = _AT_LINES.split(text) if whole and index in at_right else text.split()
+                wide = _DIGIT if index in at_right else 1.0
+                longest = max((len(word) for word in words if len(word) < _WIDEST), default=0)
+                found[index] = max(found[index], wide * longest)
         return [count + _BESIDE for count in found]
+
+
+def _lines(cell: Content, room: float) -> int:
+    """Return how many lines the text of a cell takes in a column with room for so many letters; 1 of a picture."""
+    if isinstance(cell, Drawing | Chart):
+        return 1
+    wide = _DIGIT if _is_number(cell) else 1.0
+    return sum(max(math.ceil(wide * len(line) / room), 1) for line in cell_text(cell).split("\n"))
 
 
 def _enough(widths: Sequence[float], least: Sequence[float]) -> tuple[float, ...]:
@@ -356,6 +382,12 @@ _LETTERS, _SMALLEST = 8.5, 6.0
 
 _LINE, _BESIDE = 105.0, 2
 """Characters in a line of a table as wide as the page, and those that the space between two columns takes."""
+
+_AT_LINES = re.compile(r"\n|(?<=,) ")
+"""Where the text of a number may be broken: `100 %, at least 99.9980 %`."""
+
+_DIGIT = 0.82
+"""How wide a digit is, in letters of which so many make a line."""
 
 _SMALL = 1.4
 """How many times as wide as a page a table may have to be for its numbers to stay beside their errors."""
@@ -385,6 +417,16 @@ def blocks_of(found: Iterable[str | Block]) -> tuple[Block, ...]:
     return tuple(Paragraph(each) if isinstance(each, str) else each for each in found)
 
 
+def _narrow(blocks: Sequence[Block]) -> tuple[Figure, ...]:
+    """Return the narrow figures that these blocks begin with."""
+    found: list[Figure] = []
+    for each in blocks:
+        if not isinstance(each, Figure) or not each.is_half:
+            break
+        found.append(each)
+    return tuple(found)
+
+
 @dataclass(frozen=True, slots=True)
 class Document:
     """A report.
@@ -412,9 +454,15 @@ class Document:
     signs: tuple[str, str] = field(default_factory=signs)
 
     @property
-    def with_next(self) -> list[tuple[Block, Block | None]]:
-        """Every block with the one after it."""
-        return list(zip(self.blocks, (*self.blocks[1:], None), strict=True))
+    def with_next(self) -> list[tuple[Block | tuple[Figure, ...], Block | None]]:
+        """Every block with the one after it; narrow figures that follow each other stand side by side, two in a row."""
+        found: list[tuple[Block | tuple[Figure, ...], Block | None]] = []
+        rest = self.blocks
+        while rest:
+            narrow = _narrow(rest[:2])
+            rest, first = rest[len(narrow) or 1 :], narrow or rest[0]
+            found.append((first, rest[0] if rest else None))
+        return found
 
     @property
     def pictures(self) -> list[Picture]:

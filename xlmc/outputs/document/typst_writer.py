@@ -65,8 +65,8 @@ _STYLE: Final = """
 """
 
 
-_WHOLE: Final = 12
-"""Rows of a table up to which it stays on one page."""
+_WHOLE: Final = 14
+"""Lines of a table up to which it stays on one page."""
 
 
 def pdf_bytes(document: Document) -> bytes:
@@ -137,9 +137,13 @@ def _cover(document: Document) -> Iterator[str]:
     yield f"#grid(columns: (5cm, 1fr), row-gutter: .9em,\n{cells})"
 
 
-def _block(block: Block, leads: bool) -> Iterator[str]:
-    """Yield the Typst code of a block; a paragraph that `leads` to a table or a figure stays on its page."""
+def _block(block: Block | tuple[Figure, ...], leads: bool) -> Iterator[str]:
+    """Yield the Typst code of a block, or of figures side by side; a paragraph that `leads` to a table or a figure
+    stays on its page.
+    """
     match block:
+        case tuple():
+            yield f"#grid(columns: (1fr, 1fr), column-gutter: 5mm, {', '.join(map(_figure, block))})"
         case Heading(text, level):
             yield f"#heading(level: {level}, {_text(text)})"
         case Paragraph(text, "warning"):
@@ -151,12 +155,16 @@ def _block(block: Block, leads: bool) -> Iterator[str]:
             yield f"#text(size: {_size(look)}, list(spacing: {'.5em' if look == 'small' else '.7em'}, {items}))"
         case Code(text):
             yield f"#raw({_text(text)}, block: true)"
-        case Figure(drawing, caption):
-            yield f"#figure({_image(drawing)}, caption: [#{_text(caption)}])"
+        case Figure():
+            yield f"#{_figure(block)}"
         case Table():
             if block.title:
                 yield f"#heading(level: 1, {_text(block.title)})"
             yield _table(block)
+
+
+def _figure(figure: Figure) -> str:
+    return f"figure({_image(figure.drawing)}, caption: [#{_text(figure.caption)}])"
 
 
 def _size(look: str) -> str:
@@ -177,7 +185,7 @@ def _table(table: Table) -> str:
     looks = []
     if table.crowded > 1.0:
         looks.append(f"#show table: set text(size: {table.letters:.3g}pt)")
-    if len(table.rows) <= _WHOLE and not any(isinstance(cell, Drawing | Chart) for row in table.rows for cell in row):
+    if table.lines <= _WHOLE and not any(isinstance(cell, Drawing | Chart) for row in table.rows for cell in row):
         looks.append("#show figure: set block(breakable: false)")
     return "\n".join(["#[", *looks, f"{figure}]"]) if looks else figure
 

@@ -26,19 +26,23 @@ def test_the_answer_can_be_read_alone(run):
     blocks = [*answer_blocks(run, run.results)]
     looks = [each.look for each in blocks if isinstance(each, Paragraph)]
     assert looks[-2:] == ["meaning", "small"]
-    (table,) = (each for each in blocks if isinstance(each, Table))
+    table, above = (each for each in blocks if isinstance(each, Table))
     for name, result in run.results.items():
         row = row_of(table, name)
         found = [each.found for each in row if isinstance(each, Measured)]
         assert found[:4] == [result.mean, result.standard_deviation, *result.central()]
+        if result.definition.threshold is not None:
+            *_, limit, share = row_of(above, name)
+            assert limit.value == result.definition.threshold
+            assert share.found == result.statistics.probability_above
         assert f"{name}: " in "".join(text for each in blocks if isinstance(each, Bullets) for text in each.texts)
 
 
 def test_a_report_of_one_forecast_tells_of_no_other(run):
     told, other = [*run.results][:2]
     blocks = [*answer_blocks(run, [told])]
-    (table,) = (each for each in blocks if isinstance(each, Table))
-    assert [row[0] for row in table.rows] == [told]
+    tables = [each for each in blocks if isinstance(each, Table)]
+    assert [[row[0] for row in table.rows] for table in tables] == [[told]] * len(tables)
     assert not any(text.startswith(other) for each in blocks if isinstance(each, Bullets) for text in each.texts)
 
 
@@ -48,6 +52,14 @@ def test_a_sheet_has_the_same_numbers_and_how_many_trials(run):
         numbers = [each for each in row_of(shown, row[0]) if isinstance(each, Measured)]
         assert [each for each in row if isinstance(each, Measured)] == numbers[:4]
         assert row[2].value == run.results[row[0]].statistics.trials
+
+
+def test_a_yes_no_answer_above_its_threshold_is_told_as_a_yes(make):
+    cells = {"A1": 1.0, "B1": "=A1>0.5", "B2": "=A1"}
+    told = [make.forecast("yes", "B1", threshold=0.5), make.forecast("number", "B2", threshold=0.5)]
+    found = make.simulate(cells, [make.uniform("a", "A1", 0, 1)], told)
+    above = tables(answer_blocks(found, found.results))["Values above a threshold."]
+    assert [row[0] for row in above.rows] == ["number"]
 
 
 def is_table(block):

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator, Sequence
+import math
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.number_text import percent
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE, Shown
+from xlmc.outputs.document.material import also_named
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Block, Bullets, Content, Paragraph, Table
 from xlmc.outputs.summary import (
@@ -34,8 +36,16 @@ if TYPE_CHECKING:
 __all__ = ["answer_blocks", "answer_tables", "opening_sentences", "section"]
 
 
-def answer_blocks(simulation: RunResult, names: Collection[str]) -> Iterator[Block]:
-    """Yield the question, and the answers of the forecasts of these names."""
+def answer_blocks(
+    simulation: RunResult, names: Collection[str], same: Mapping[str, tuple[str, ...]] | None = None
+) -> Iterator[Block]:
+    """Yield the question, and the answers of the forecasts of these names.
+
+    Args:
+        simulation: the finished run.
+        names: of the forecasts.
+        same: forecast -> others that are the same, which are named with it.
+    """
     rows = [row for row in summarise(simulation) if row.name in names]
     for sentence in opening_sentences(simulation):
         yield Paragraph(sentence, "warning")
@@ -44,9 +54,15 @@ def answer_blocks(simulation: RunResult, names: Collection[str]) -> Iterator[Blo
     said = [each for each in statements(simulation) if each.forecast in names]
     if said:
         leads = tuple(each.forecast if each.text.startswith(f"{each.forecast}: ") else "" for each in said)
-        yield Bullets(tuple(f"{each.text}." for each in said), leads=leads)
+        texts = (
+            f"{also_named(lead, same or {})}{each.text.removeprefix(lead)}."
+            for lead, each in zip(leads, said, strict=True)
+        )
+        yield Bullets(tuple(texts), leads=leads)
         yield Paragraph(meaning(simulation.model.workbook, said), "small")
+    rows = [replace(row, name=also_named(row.name, same or {})) for row in rows]
     yield _answers(rows)
+    yield from _thresholds(rows)
     yield from _texts(rows)
     yield Paragraph(error_sentence(simulation.model.workbook), "meaning")
     ended = [] if simulation.stopped == ALL_TRIALS else [f"The run ended when {simulation.stopped.sentence}."]
@@ -86,21 +102,13 @@ def _remarks(simulation: RunResult, rows: Sequence[SummaryRow]) -> list[str]:
 
 
 def _answers(rows: Sequence[SummaryRow]) -> Table:
-    """Return the paper's table; thresholds stand beside the ranges."""
-    thresholds = any(row.threshold is not None for row in rows)
+    """Return the paper's table."""
     mixed = _is_mixed(rows)
-    heads = ["Forecast", "Units", *_heads(rows), *["Threshold", "Above threshold"] * thresholds]
-    widths = [2.4, 0.9, 1.6, 1.6, 1.6, 1.6, 1.1, *[1.0] * mixed, *[1.3, 1.5] * thresholds]
-    lines = []
-    for row in rows:
-        line = [row.name, row.unit, *_numbers(row, mixed)]
-        if thresholds:
-            limit = "" if row.threshold is None else row.form.number(row.threshold)
-            line.append(replace(cells.exact(row.threshold, row.form), written=limit))
-            line.append(Measured(row.above, "share"))
-        lines.append(tuple(line))
+    heads = ("Forecast", "Units", *_heads(rows))
+    lines = tuple((row.name, row.unit, *_numbers(row, mixed)) for row in rows)
+    widths = (4.0, 0.9, *[1.0] * (5 + mixed))  # those of numbers become as wide as these
     caption = "The answers, from the accepted trials; each number with its standard error."
-    return Table("", tuple(heads), tuple(lines), range(2, len(heads)), tuple(widths), caption)
+    return Table("", heads, lines, range(2, len(heads)), widths, caption)
 
 
 def _counted_answers(rows: Sequence[SummaryRow]) -> Table:
@@ -153,7 +161,9 @@ def _texts(rows: Sequence[SummaryRow]) -> Iterator[Table]:
 
 
 def _thresholds(rows: Sequence[SummaryRow]) -> Iterator[Table]:
-    """Yield how probable values above the thresholds are; nothing where there is no threshold."""
+    """Yield how probable values above the thresholds are, but of a yes/no answer, whose yes they are; nothing where
+    there is no threshold.
+    """
     lines = [
         (
             row.name,
@@ -162,11 +172,16 @@ def _thresholds(rows: Sequence[SummaryRow]) -> Iterator[Table]:
             Measured(row.above, "share", interval=True, nothing=NONE),
         )
         for row in rows
-        if row.threshold is not None
+        if row.threshold is not None and not _is_yes(row)
     ]
     if lines:
         heads = ("Forecast", "Units", "Threshold", "Above it")
         yield Table("", heads, tuple(lines), caption="Values above a threshold.")
+
+
+def _is_yes(row: SummaryRow) -> bool:
+    """Whether what is above the threshold are the yes answers."""
+    return row.yes is not None and row.above is not None and math.isclose(row.above.value, row.yes.value)
 
 
 def _range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
@@ -192,4 +207,4 @@ def _base_sentences(simulation: RunResult) -> list[str]:
 
 def section(material: Material) -> Iterator[Block]:
     """Yield the question, and the answers of the chosen forecasts."""
-    return answer_blocks(material.simulation, material.forecasts)
+    return answer_blocks(material.simulation, material.once, material.same)

@@ -144,7 +144,7 @@ def section(material: Material) -> Iterator[Block]:
         "Picture",
     )
     caption = "The assumptions before and after filtering." if acts else "The assumptions."
-    yield Table("", heads, tuple(rows), (), (1.9, 2.9, 1.9, 1.7, 1.95), caption)
+    yield Table("", heads, tuple(rows), (2, 3), (1.9, 3.4, 1.5, 1.5, 1.9), caption)
     yield Paragraph(" ".join(assumption_remarks(simulation)), "small")
     yield from correlation_blocks(simulation)
 

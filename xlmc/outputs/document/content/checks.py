@@ -28,9 +28,9 @@ def check_blocks(simulation: RunResult) -> Iterator[Block]:
         "",
         ("Check", "Cell", "Base case", "Trials failing", "Share", "Because"),
         tuple(map(_row, checks)),
-        widths=(2.4, 1.2, 0.9, 0.9, 1.3, 3.6),
+        widths=(2.2, 1.1, 0.6, 0.7, 1.2, 4.4),
         caption="Checks: each cell must be TRUE.",
-        spans=(1, 2, 2, 1, 1, 4),
+        spans=(1, 1, 1, 1, 1, 6),
     )
     yield Paragraph(f"{checks_sentence(checks)}. A check rejects no trial.", "small")
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Final
 
-from xlmc.montecarlo.number_text import count_text, counted_text, percent
+from xlmc.montecarlo.number_text import counted_text, percent
 from xlmc.outputs.document.charts import shares_chart
 from xlmc.outputs.document.drawings import forecast_drawing
-from xlmc.outputs.document.parts import Block, Figure, Paragraph
+from xlmc.outputs.document.parts import HALF, Block, Figure, Paragraph
 from xlmc.outputs.histogram import figures_of, not_drawn
 from xlmc.outputs.summary import answer_text, central_text
 
@@ -20,31 +20,36 @@ __all__ = ["section"]
 
 
 _FEW: Final = 4
-"""Forecasts whose figures are large, two a page; those of more stand four a page."""
+"""Forecasts whose figures are large, two a page; those of more stand side by side, eight a page."""
 _MOST_FIGURES: Final = 12
 """Forecasts that a report draws."""
-_LARGE, _SMALL = 160.0, 100.0
-"""Widths of the figures of forecasts, in millimetres."""
+_LARGE: Final = 160.0
+"""The width of the figures of few forecasts, in millimetres."""
+_HOW_TO_READ: Final = (
+    "Above in each figure: how many accepted trials lie in each bar; below: the share of them that is not above each "
+    "value. Dark: the central range. Upright line: the mean."
+)
 
 
 def section(material: Material) -> Iterator[Block]:
     """Yield a figure of each chosen forecast."""
     simulation = material.simulation
-    width = _LARGE if len(material.forecasts) <= _FEW else _SMALL
-    shown = figures_of(simulation, material.forecasts)
+    width = _LARGE if len(material.once) <= _FEW else HALF
+    shown = figures_of(simulation, material.once)
     if len(shown) > _MOST_FIGURES:
         yield Paragraph(
             f"Figures of the first {_MOST_FIGURES} of {len(shown)} forecasts. The sheet Charts of the result workbook "
             f"and the page show {_many(simulation)}; --forecasts chooses those of the report."
         )
+    if not all(figure.answer.is_share for figure in shown[:_MOST_FIGURES]):
+        yield Paragraph(_HOW_TO_READ)
     for figure in shown[:_MOST_FIGURES]:
         row, bins = figure.answer, figure.bins
         units = f" {row.units}" if row.units else ""
-        per = f" per {bins.form.width(bins.width)}{units}" if bins.names is None else ""
+        wide = f" Bars: {bins.form.width(bins.width)}{units}." if bins.names is None else ""
         caption = (
-            f"{figure.name}. Above, the accepted trials{per}; below, the share of them that "
-            f"is not above each value. Dark: the central {percent(row.share)} of {count_text(row.trials)} accepted "
-            f"trials, from {central_text(row)}{units}. Vertical line: the mean, {answer_text(row)}{units}."
+            f"{material.called(row.name)}: mean {answer_text(row)}{units}; central {percent(row.share)} from "
+            f"{central_text(row)}{units}.{wide}"
         )
         if row.is_share:
             caption = f"{figure.name}: {figure.said}."

@@ -18,8 +18,14 @@ __all__ = ["section"]
 def section(material: Material) -> Iterator[Block]:
     """Yield the words that the report uses."""
     simulation = material.simulation
+    model = simulation.model
+    absent = {
+        "Filter": not model.filters and not model.forecast_filters,
+        "Check": not simulation.checks,
+        "Threshold": all(each.threshold is None for each in model.forecasts),
+    }
     words = [
-        *GLOSSARY,
+        *(each for each in GLOSSARY if not absent.get(each[0])),
         *(WORDS_OF_EVIDENCE if simulation.agreement is not None else ()),
         *(WORDS_OF_SCENARIOS if simulation.settings.scenarios else ()),
     ]

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document.parts import Block, Code, Paragraph, Table
 
 if TYPE_CHECKING:
@@ -23,18 +22,19 @@ def section(material: Material) -> Iterator[Block]:
     yield Code(str(record["run.repeat"]))
     yield Paragraph("The fingerprint of the accepted trials, a SHA-256, is then:")
     yield Code(str(record["run.fingerprint"]))
-    software = [(str(entry.label), str(entry.value)) for entry in record.section("software").entries]
-    machine = [(str(entry.label), str(entry.value)) for entry in record.section("processor").entries]
+    software = (f"{entry.label} {entry.value}" for entry in record.section("software").entries)
+    machine = (str(entry.value) for entry in record.section("processor").entries)
     lines = [
-        ("Workbook", str(record["file.name"])),
-        ("SHA-256 of the workbook", str(record["file.sha256"])),
-        ("Seed", str(record["settings.seed"])),
-        ("Trials", count_text(material.simulation.trials)),
-        ("Accepted trials", count_text(material.simulation.accepted)),
         ("Sampling", str(record["sampling.method_in_words"])),
         ("Generator", str(record["sampling.generator"])),
         ("Engine", str(record["sampling.engine"])),
-        *software,
-        *(each for each in machine if len(each[1]) < 60),
+        ("Software", ", ".join(software)),
+        ("Machine", ", ".join(each for each in machine if len(each) < 60)),
     ]
-    yield Table("", ("What", "Value"), tuple(lines), widths=(1.6, 5), caption="What the numbers depend on.")
+    yield Table(
+        "",
+        ("What", "Value"),
+        tuple(lines),
+        widths=(1.6, 5),
+        caption="What the numbers depend on, beside what stands below the title.",
+    )

@@ -262,7 +262,7 @@ def section(material: Material) -> Iterator[Block]:
     named = None if len(material.forecasts) == len(simulation.model.forecasts) else material.forecasts
     within = named is None or set(named) <= set(simulation.detailed)
     found, fits = sensitivities(simulation, None if within else named), vocabulary_of(simulation.model.workbook).fits
-    shown = [each for each in found.forecasts if each.forecast in material.forecasts]
+    shown = [each for each in found.forecasts if each.forecast in material.once]
     if not shown:
         return
     yield Paragraph(
@@ -277,7 +277,7 @@ def section(material: Material) -> Iterator[Block]:
     most = _MOST_BARS if len(shown) <= _FEW else _MOST_OF_MANY
     for each in shown:
         if each.influences and len(shown) <= _FEW:
-            caption = f"What {each.forecast} depends on most."
+            caption = f"What {material.called(each.forecast)} depends on most."
             yield Figure(replace(influence_charts(each, most)[0], title=""), caption)
         lines += influence_rows(each, most)
     if lines:

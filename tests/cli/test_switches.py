@@ -14,7 +14,8 @@ from xlmc.montecarlo.definitions.scenarios import Limits, Scenario, Switched
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.outputs.live.adjustments import adjustments_of, in_words
+from xlmc.outputs.live.adjusted_scenarios import adjustments_of
+from xlmc.outputs.live.adjustments_in_words import in_words
 from xlmc.outputs.live.hand_over import edited_state, write_changes
 from xlmc.outputs.live.session import Session
 from xlmc.outputs.live.what_changed import what_changed

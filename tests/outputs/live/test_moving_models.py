@@ -15,7 +15,8 @@ from xlmc.excel.workbook.writer import package_bytes
 from xlmc.montecarlo.model.applied_changes import edits
 from xlmc.montecarlo.model.loading import build_model, load
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.outputs.live.adjustments import LIMITS, Adjustments, changes_of
+from xlmc.outputs.live.adjusted_scenarios import changes_of
+from xlmc.outputs.live.adjustments import LIMITS, Adjustments
 from xlmc.outputs.live.moving_models import KnownModels
 from xlmc.outputs.live.protocol import PageMessage
 from xlmc.outputs.live.session import Session

@@ -36,7 +36,9 @@ from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.outputs.live.adjustments import NONE, PARTS, Adjustments, adjustments_of, in_words, scenario_of
+from xlmc.outputs.live.adjusted_scenarios import adjustments_of, scenario_of
+from xlmc.outputs.live.adjustments import NONE, PARTS, Adjustments
+from xlmc.outputs.live.adjustments_in_words import in_words
 from xlmc.outputs.live.frames import matrix_of, pair_of
 from xlmc.outputs.live.hand_over import page_of
 from xlmc.outputs.live.jobs import MOVING_TRIALS, Outcome, SupersededError

@@ -11,44 +11,21 @@ threshold that is `NONE` is taken away.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
-from xlmc.analysis.results.statements.in_words import given_text, plain_text
-from xlmc.errors import ErrorCode
-from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import (
     CUTOFFS,
     Assumption,
     Correlation,
-    Decision,
     Definitions,
     Filter,
     Forecast,
     Parameter,
-    Solve,
 )
-from xlmc.montecarlo.definitions.evidence import SIZES, USE_IS_OFF, Evidence
-from xlmc.montecarlo.definitions.scenarios import (
-    Band,
-    Change,
-    Correlated,
-    Drawn,
-    Frozen,
-    Limits,
-    Measured,
-    Numbers,
-    Range,
-    Redrawn,
-    Scenario,
-    Stated,
-    Switched,
-    Typed,
-)
-from xlmc.montecarlo.distributions import FAMILIES
-from xlmc.montecarlo.distributions.spelling import name_key, plain
-from xlmc.outputs.live.kinds import KINDS, distribution_in_kind, in_kind, kinds_of
+from xlmc.montecarlo.definitions.evidence import SIZES, Evidence
+from xlmc.outputs.live.kinds import KINDS, in_kind, kinds_of
 
 __all__ = [
     "BAND",
@@ -62,20 +39,15 @@ __all__ = [
     "SWITCHES",
     "Adjustments",
     "Amount",
-    "adjusted_assumption",
-    "adjusted_definitions",
-    "adjustments_of",
+    "Changed",
     "assumption_numbers",
-    "changes_of",
-    "in_words",
     "is_choice",
     "is_own",
     "measured_numbers",
     "movable_limits",
+    "numbers_of",
     "own_values",
     "pairs_of",
-    "scenario_of",
-    "usual_variants",
 ]
 
 LIMITS: Final = {"at_least": "at least", "above": "above", "at_most": "at most", "below": "below"}
@@ -101,8 +73,6 @@ NONE: Final = "none"
 
 REMOVABLE: Final = frozenset({*LIMITS, *CUTOFFS, "threshold"})
 """Keys of what can be taken away."""
-
-_HEADINGS_OF_KINDS: Final = {spec.key: spec.heading for kind in KINDS for spec in FAMILIES[kind].parameters}
 
 PARTS: Final = {
     "assumption": "assumptions",
@@ -152,7 +122,7 @@ class Adjustments:
         and of values that it now has itself.
         """
         found = Adjustments()
-        for of, name, key, value in self._each():
+        for of, name, key, value in self.each():
             own = own_values(definitions, of, name, self.kind(of, name))
             if key in own and not is_own(value, own[key]) and is_choice(definitions, of, name, value):
                 found = found.having(of, name, key, value)
@@ -233,7 +203,8 @@ class Adjustments:
             part[name] = own
         return replace(self, **{PARTS[of]: part})
 
-    def _each(self) -> Iterator[tuple[str, str, str, Amount]]:
+    def each(self) -> Iterator[tuple[str, str, str, Amount]]:
+        """Yield the kind of row, its name, the key and the value of each change."""
         for of in PARTS:
             for name, each in self._part(of).items():
                 for key, value in each.items():
@@ -335,354 +306,6 @@ def _percent(forecast: Forecast) -> float:
     return float(f"{100.0 * forecast.central:.12g}")
 
 
-def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Change]:
-    """Return what is to be changed in the workbook, without what has no effect, as a number of what is frozen."""
-    found: list[Change] = []
-    for assumption in definitions.assumptions:
-        if moved := adjustments.assumptions.get(assumption.name):
-            found += _of_assumption(assumption, dict(moved))
-    for name, given in adjustments.filters.items():
-        own = definitions.is_used(name)
-        used = bool(given.get("used", own))
-        numbers = {key: value for key, value in given.items() if key != "used"}
-        if used != own:
-            found.append(Switched(name, used))
-        if used and numbers and MEASURED.keys() >= numbers.keys():
-            found.append(Measured(name, {key: float(value) for key, value in numbers.items()}))
-        elif used and numbers:
-            found.append(Limits(name, _numbers(numbers)))
-    pairs = pairs_of(definitions)
-    for name, given in adjustments.correlations.items():
-        if name in pairs and "correlation" in given:
-            found.append(Correlated(pairs[name].first, pairs[name].second, float(given["correlation"])))
-    found += [Stated(name, _numbers(given)) for name, given in adjustments.forecasts.items()]
-    found += _typed(definitions, adjustments)
-    return found
-
-
-def _typed(definitions: Definitions, adjustments: Adjustments) -> Iterator[Typed]:
-    """Return what is typed into the cells of decisions, and into the rows of cells that are solved for."""
-    for decision in definitions.decisions:
-        for value in adjustments.decisions.get(decision.name, {}).values():
-            yield Typed(decision.cell, decision.content(float(value)), named=decision.name)
-    for solve in definitions.solves:
-        for key, value in adjustments.solves.get(solve.name, {}).items():
-            if key in solve.typed:
-                of = ("xlmc_solve", solve.name, SOLVED[key])
-                yield Typed(solve.typed[key], float(value), named=f"{solve.name} {SOLVED[key]}", of=of)
-
-
-def _numbers(given: Mapping[str, Amount]) -> dict[str, float | None]:
+def numbers_of(given: Mapping[str, Amount]) -> dict[str, float | None]:
     """Return key -> number; None for what is taken away."""
     return {key: None if value == NONE else float(value) for key, value in given.items()}
-
-
-def _of_assumption(assumption: Assumption, given: dict[str, Amount]) -> Iterator[Change]:
-    name, base = assumption.name, given.pop("base", None)
-    frozen = given.pop("frozen", assumption.frozen)
-    if frozen:
-        if base is not None or not assumption.frozen:
-            yield Frozen(name, None if base is None else float(base))
-        return
-    if assumption.frozen:
-        yield Drawn(name)
-    low, high = (float(given.pop(key, end)) for key, end in BAND.items())
-    kind = given.pop("kind", None)
-    if kind in kinds_of(assumption) and kind != assumption.distribution:
-        yield Redrawn(name, distribution_in_kind(assumption, str(kind)))
-    if given:
-        yield Numbers(name, _numbers(given))
-    if (low, high) != (*BAND.values(),):
-        yield Band(name, low, high)
-
-
-def scenario_of(definitions: Definitions, name: str, adjustments: Adjustments) -> Scenario:
-    """Return a state of the window as a scenario, such as the workbook's table `xlmc_scenarios` holds."""
-    return Scenario(name, tuple(changes_of(definitions, adjustments)))
-
-
-def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments | None:
-    """Return a scenario of the workbook as a state of the window; None if the window has no handle for a change."""
-    assumptions = {each.name: each for each in definitions.assumptions}
-    found = Adjustments()
-    kinds: dict[str, str] = {}
-    typed = [_of_handle(definitions, each) for each in scenario.changes if isinstance(each, Typed)]
-    for change in (*typed, *(each for each in scenario.changes if not isinstance(each, Typed))):
-        if isinstance(change, Typed):
-            handle = _handle_of(definitions, change)
-            if handle is None:
-                return None
-            found = found.having(*handle)
-            continue
-        values = _values(change, assumptions)
-        if values is None:
-            return None
-        of, name = _row_of(change)
-        if isinstance(change, Redrawn):
-            kinds[name] = change.distribution.family
-        own = own_values(definitions, of, name, kinds.get(name))
-        for key, value in values.items():
-            if key not in own and value == NONE:
-                continue  # there is nothing to be taken away
-            if key not in own:
-                return None
-            found = found.having(of, name, key, value)
-    return found
-
-
-def _of_handle(definitions: Definitions, typed: Typed) -> Change:
-    """Return what is typed into a row of a table as a change of what the row says; itself where no handle does that."""
-    kind, written, heading = typed.of or ("", "", "")
-    rows = {name_key(each.name): each.name for each in _rows_of_table(definitions, kind)}
-    name = rows.get(written, "")
-    keys = {plain(each): key for key, headings in _headings(definitions, kind, name) for each in headings}
-    key, value, where = keys.get(plain(heading), ""), typed.value, typed.where
-    if key == "frozen" and isinstance(value, bool):
-        return Frozen(name, None, where) if value else Drawn(name, where)
-    number = _number_typed(typed)
-    if key in ("", "frozen") or (number is None and (value is not None or key not in REMOVABLE)):
-        return typed
-    if kind == "xlmc_evidence" and number is not None:
-        return Measured(name, {key: number}, where)
-    if kind == "xlmc_filters":
-        return Limits(name, {key: number}, where)
-    if kind == "xlmc_forecasts":
-        return Stated(name, {key: number}, where)
-    return Numbers(name, {key: number}, where)
-
-
-def _handle_of(definitions: Definitions, typed: Typed) -> tuple[str, str, str, float] | None:
-    """Return the kind, the name, the key and the value of what is typed: of a decision, or of a row that solves."""
-    number = _number_typed(typed)
-    for decision in definitions.decisions:
-        if decision.cell == typed.cell:
-            value = decision.value_of(typed.value) if decision.contents else number
-            return None if value is None else ("decision", decision.name, "value", value)
-    for solve in definitions.solves:
-        for key, where in solve.typed.items():
-            if where == typed.cell:
-                return None if number is None else ("solve", solve.name, key, number)
-    return None
-
-
-def _number_typed(typed: Typed) -> float | None:
-    """Return the number that is typed; None for anything else."""
-    value = typed.value
-    return float(value) if isinstance(value, int | float) and not isinstance(value, bool | ErrorCode) else None
-
-
-def _rows_of_table(definitions: Definitions, kind: str) -> Iterable[Assumption | Filter | Evidence | Forecast]:
-    """Return what the rows of a kind of table define."""
-    match kind:
-        case "xlmc_assumptions":
-            return definitions.assumptions
-        case "xlmc_filters":
-            return (*definitions.filters, *definitions.forecast_filters, *definitions.unused)
-        case "xlmc_evidence":
-            return definitions.evidence
-        case "xlmc_forecasts":
-            return definitions.forecasts
-    return ()
-
-
-def _headings(definitions: Definitions, kind: str, name: str) -> Iterator[tuple[str, Sequence[str]]]:
-    """Return the key of each handle of a row, and how its column may be headed."""
-    match kind:
-        case "xlmc_assumptions":
-            assumption = next((each for each in definitions.assumptions if each.name == name), None)
-            for spec in () if assumption is None else assumption.family.parameters:
-                yield spec.key, spec.headings
-            yield from ((key, (heading,)) for key, heading in CUTOFFS.items())
-            yield "frozen", ("Frozen",)
-        case "xlmc_filters":
-            yield from ((key, (heading,)) for key, heading in LIMITS.items())
-        case "xlmc_evidence":
-            yield "reading", ("Reading",)
-            yield from ((key, (heading, "±") if key == "plus_minus" else (heading,)) for key, heading in SIZES.items())
-        case "xlmc_forecasts":
-            yield from (("threshold", ("Threshold",)), ("central", ("Range %",)))
-
-
-def _row_of(change: Change) -> tuple[str, str]:
-    """Return the kind and the name of the row that a change with values is of."""
-    match change:
-        case Limits(name) | Switched(name) | Measured(name):
-            return "filter", name
-        case Stated(name):
-            return "forecast", name
-        case Correlated(first, second):
-            return "correlation", f"{first} and {second}"
-        case Frozen(name) | Drawn(name) | Band(name) | Range(name) | Numbers(name) | Redrawn(name):
-            return "assumption", name
-    raise TypeError(change)
-
-
-def _values(change: Change, assumptions: Mapping[str, Assumption]) -> dict[str, Amount] | None:
-    """Return key -> value of one change; None if it is another kind of change."""
-    match change:
-        case Frozen(_, value):
-            return {"frozen": True} if value is None else {"frozen": True, "base": value}
-        case Drawn():
-            return {"frozen": False}
-        case Switched(_, used):
-            return {"used": used}
-        case Correlated(_, _, value):
-            return {"correlation": value}
-        case Redrawn(name, to) if name in assumptions and to.family in kinds_of(assumptions[name]):
-            suited = in_kind(assumptions[name], to.family).given
-            return {"kind": to.family, **{key: value for key, value in to.given.items() if value != suited.get(key)}}
-        case Band(_, low, high):
-            return dict(zip(BAND, (low, high), strict=True))
-        case Range(name, low, high) if name in assumptions and {"low", "high"} <= {*assumptions[name].parameters}:
-            ends: dict[str, float | None] = {"low": low, "high": high}
-            return {key: end for key, end in ends.items() if end is not None}
-        case Numbers(_, values) | Limits(_, values) | Measured(_, values) | Stated(_, values):
-            return {key: NONE if value is None else value for key, value in values.items()}
-    return None
-
-
-def adjusted_definitions(definitions: Definitions, adjustments: Adjustments) -> Definitions:
-    """Return the definitions with these values, whatever they are."""
-    return replace(
-        definitions,
-        assumptions=tuple(adjusted_assumption(each, adjustments) for each in definitions.assumptions),
-        filters=tuple(_filter(each, adjustments.filters) for each in definitions.filters),
-        forecast_filters=tuple(_filter(each, adjustments.filters) for each in definitions.forecast_filters),
-        unused=tuple(_filter(each, adjustments.filters) for each in definitions.unused),
-        evidence=tuple(_evidence(each, adjustments.filters) for each in definitions.evidence),
-        forecasts=tuple(_forecast(each, adjustments.forecasts) for each in definitions.forecasts),
-        decisions=tuple(_decision(each, adjustments.decisions) for each in definitions.decisions),
-        solves=tuple(_solve(each, adjustments.solves) for each in definitions.solves),
-    )
-
-
-def adjusted_assumption(assumption: Assumption, adjustments: Adjustments) -> Assumption:
-    """Return an assumption with its numbers as they are now, whatever they are."""
-    given = dict(adjustments.assumptions.get(assumption.name, {}))
-    if not given:
-        return assumption
-    frozen_part: dict[str, Any] = {key: given.pop(key) for key in ("base", "frozen") if key in given}
-    for key in BAND:
-        given.pop(key, None)
-    assumption = in_kind(assumption, str(given.pop("kind", assumption.distribution)))
-    return replace(assumption.with_numbers(_numbers(given)), **frozen_part)
-
-
-def _filter(filter_: Filter, changed: Changed) -> Filter:
-    given = dict(changed.get(filter_.name, {}))
-    used = bool(given.pop("used", filter_.used))
-    if filter_.evidence is not None:
-        return replace(filter_, used=used, evidence=_evidence(filter_.evidence, changed))
-    return replace(filter_, used=used, **_numbers(given))  # type: ignore[arg-type]  # of its limits
-
-
-def _evidence(evidence: Evidence, changed: Changed) -> Evidence:
-    given = dict(changed.get(evidence.name, {}))
-    unused = ("" if given.pop("used") else USE_IS_OFF) if "used" in given else evidence.unused
-    numbers = {key: float(value) for key, value in given.items()}
-    reading = numbers.pop("reading", evidence.reading)
-    return replace(evidence, reading=reading, sizes={**evidence.sizes, **numbers}, unused=unused)
-
-
-def _forecast(forecast: Forecast, changed: Changed) -> Forecast:
-    given = _numbers(changed.get(forecast.name, {}))
-    if not given:
-        return forecast
-    central = given.get("central")
-    share = forecast.central if central is None else central / 100.0
-    return replace(forecast, threshold=given.get("threshold", forecast.threshold), central=share)
-
-
-def _decision(decision: Decision, changed: Changed) -> Decision:
-    given = changed.get(decision.name, {})
-    return replace(decision, base=float(given["value"])) if given else decision
-
-
-def _solve(solve: Solve, changed: Changed) -> Solve:
-    given = {key: float(value) for key, value in changed.get(solve.name, {}).items()}
-    return replace(solve, **given) if given else solve  # type: ignore[arg-type]  # the keys are of its numbers
-
-
-def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
-    """Say what differs, a phrase each: `friction: High 0.75 → 0.85`; also of what the workbook no longer has."""
-    found = []
-    for of, name, key, value in adjustments._each():
-        own = own_values(definitions, of, name, adjustments.kind(of, name))
-        if key in own:
-            label = changed_text(definitions, of, name, key, own[key], value)
-        else:
-            number = _amount_text(key, value)
-            label = f"{LIMITS.get(key, key.replace('_', ' '))} {number} (no longer in the workbook)"
-        found.append(f"{name}: {label}")
-    return found
-
-
-def changed_text(
-    definitions: Definitions, of: str, name: str, key: str, before: Parameter | bool | str | None, after: Amount
-) -> str:
-    """Write a change: `High 0.75 → 0.85`, `frozen`, `at least 0 → 0.1`."""
-    if key == "frozen":
-        return "frozen" if after else "not frozen"
-    if key == "used":
-        return "used" if after else "not used"
-    if of == "correlation":
-        heading = "correlation"
-    elif of in ("decision", "solve"):
-        heading = {"value": "value", **SOLVED}[key]
-    elif of != "assumption":
-        heading = {**LIMITS, **MEASURED, **STATED}[key]
-    elif key in BAND:
-        heading = "band from" if key == "band_low" else "band to"
-        return f"{heading} {_amount_text(key, after)} %"
-    elif key in ("base", "kind"):
-        heading = {"base": "value", "kind": "kind"}[key]
-    else:
-        assumption = next(each for each in definitions.assumptions if each.name == name)
-        heading = {**_HEADINGS_OF_KINDS, **assumption.headings}[key]
-    choices = next((each for each in definitions.decisions if of == "decision" and each.name == name), None)
-    if choices is not None and choices.contents:
-        old = "another" if before is None else choices.shown(float(before))  # type: ignore[arg-type]  # its value
-        return f"{heading} {old} → {choices.shown(float(after))}"
-    shown = "none" if before is None else _amount_text(key, before)
-    return f"{heading} {shown} → {_amount_text(key, after)}"
-
-
-def _amount_text(key: str, value: Parameter | Amount) -> str:
-    """Write a value: `0.75`, `51 %`; `none` for what is taken away; `on` and `off` of a switch."""
-    if isinstance(value, bool):
-        return ("off", "on")[value]
-    if isinstance(value, str):
-        return value
-    return f"{given_text(value)} %" if key == "central" else given_text(value)
-
-
-def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
-    """Return variants that show how firm an answer is: all ranges wider and narrower, each limit halved and doubled.
-
-    Ranges are those of the assumptions with numbers `low` and `high`; a limit of 0 stays.
-    """
-    found: dict[str, Adjustments] = {}
-    for label, factor in (("half as wide", 0.5), ("one and a half times as wide", 1.5)):
-        made = Adjustments()
-        for name, low, high in _ranges(definitions):
-            middle, half = 0.5 * (low + high), 0.5 * (high - low) * factor
-            for key, end in (("low", middle - half), ("high", middle + half)):
-                made = made.having("assumption", name, key, float(f"{end:.12g}"))  # 0.6875, not 0.6874999999999999
-        if made:
-            found[f"every range {label}"] = made
-    for filter_ in definitions.filters:
-        for key, limit in movable_limits(filter_).items():
-            if isinstance(limit, Cell) or not limit:
-                continue
-            for label, factor in (("half", 0.5), ("twice", 2.0)):
-                name = f"{filter_.name} {LIMITS[key]} {plain_text(limit * factor)} ({label})"
-                found[name] = Adjustments().having("filter", filter_.name, key, limit * factor)
-    return found
-
-
-def _ranges(definitions: Definitions) -> Iterator[tuple[str, float, float]]:
-    """Return name, low and high of the drawn assumptions that are given by these two numbers."""
-    for each in definitions.assumptions:
-        low, high = each.parameters.get("low"), each.parameters.get("high")
-        if not each.frozen and len(each.parameters) == 2 and isinstance(low, float) and isinstance(high, float):
-            yield each.name, low, high

@@ -10,7 +10,8 @@ from xlmc.analysis.studies.scenario_answers import answers_of, model_of, run_sce
 from xlmc.errors import XlmcError
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.simulation.simulate import run_model
-from xlmc.outputs.live.adjustments import Adjustments, scenario_of
+from xlmc.outputs.live.adjusted_scenarios import scenario_of
+from xlmc.outputs.live.adjustments import Adjustments
 from xlmc.outputs.live.frames import scenarios_html
 
 if TYPE_CHECKING:

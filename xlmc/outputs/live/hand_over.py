@@ -27,7 +27,9 @@ from xlmc.montecarlo.simulation.simulate import run_model
 from xlmc.montecarlo.simulation.simulation import ChangedFrom
 from xlmc.outputs import save
 from xlmc.outputs.json_document import save_json
-from xlmc.outputs.live.adjustments import Adjustments, in_words, scenario_of
+from xlmc.outputs.live.adjusted_scenarios import scenario_of
+from xlmc.outputs.live.adjustments import Adjustments
+from xlmc.outputs.live.adjustments_in_words import in_words
 from xlmc.outputs.page import page_text, save_page
 
 if TYPE_CHECKING:

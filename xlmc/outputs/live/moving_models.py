@@ -25,7 +25,8 @@ from xlmc.montecarlo.loop.blocks import ModelRunner
 from xlmc.montecarlo.loop.reusing_runner import ReusingRunner
 from xlmc.montecarlo.model.applied_changes import applied, changed_cells, reads_again
 from xlmc.montecarlo.model.model import CompiledModel
-from xlmc.outputs.live.adjustments import Adjustments, changes_of
+from xlmc.outputs.live.adjusted_scenarios import changes_of
+from xlmc.outputs.live.adjustments import Adjustments
 
 __all__ = ["MANY_FORMULAS", "KnownModels", "Moving"]
 

@@ -17,7 +17,8 @@ from watchfiles import awatch
 from xlmc.errors import WorkbookError, XlmcError
 from xlmc.montecarlo.definitions.number_styles import in_style
 from xlmc.montecarlo.model.loading import load
-from xlmc.outputs.live.adjustments import Adjustments, in_words
+from xlmc.outputs.live.adjustments import Adjustments
+from xlmc.outputs.live.adjustments_in_words import in_words
 from xlmc.outputs.live.hand_over import KINDS, edited_state, page_of, save_result, write_changes
 from xlmc.outputs.live.jobs import Job, Outcome, SupersededError, View
 from xlmc.outputs.live.library import Library

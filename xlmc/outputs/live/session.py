@@ -24,12 +24,11 @@ from xlmc.outputs.live.adjustments import (
     SWITCHES,
     Adjustments,
     Amount,
-    in_words,
     is_choice,
     is_own,
     own_values,
-    usual_variants,
 )
+from xlmc.outputs.live.adjustments_in_words import in_words
 from xlmc.outputs.live.comparison import Comparison
 from xlmc.outputs.live.hand_over import AtRest
 from xlmc.outputs.live.history import History, Moment
@@ -55,6 +54,7 @@ from xlmc.outputs.live.kinds import KINDS
 from xlmc.outputs.live.moving_models import KnownModels
 from xlmc.outputs.live.pace import Pace
 from xlmc.outputs.live.protocol import Message, PageMessage
+from xlmc.outputs.live.usual_variants import usual_variants
 from xlmc.outputs.live.window_book import (
     Shapes,
     assumption_rows,

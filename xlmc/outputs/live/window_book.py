@@ -25,6 +25,8 @@ from xlmc.montecarlo.number_text import counted_text
 from xlmc.montecarlo.sampling.draws import Draw
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.statistics.estimate import finite, t_quantile
+from xlmc.outputs.live.adjusted_definitions import adjusted_assumption, adjusted_definitions
+from xlmc.outputs.live.adjusted_scenarios import adjustments_of
 from xlmc.outputs.live.adjustments import (
     BAND,
     LIMITS,
@@ -33,16 +35,13 @@ from xlmc.outputs.live.adjustments import (
     REMOVABLE,
     SOLVED,
     Adjustments,
-    adjusted_assumption,
-    adjusted_definitions,
-    adjustments_of,
     assumption_numbers,
-    in_words,
     measured_numbers,
     movable_limits,
     own_values,
     pairs_of,
 )
+from xlmc.outputs.live.adjustments_in_words import in_words
 from xlmc.outputs.live.kinds import in_kind, kinds_of
 from xlmc.outputs.live.protocol import Message
 from xlmc.outputs.page.payload import CONFIDENCE, signs_json

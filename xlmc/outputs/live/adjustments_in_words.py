@@ -1,0 +1,68 @@
+"""What the window has changed, in words."""
+
+from __future__ import annotations
+
+from typing import Final
+
+from xlmc.analysis.results.statements.in_words import given_text
+from xlmc.montecarlo.definitions.definitions import Definitions, Parameter
+from xlmc.montecarlo.distributions import FAMILIES
+from xlmc.outputs.live.adjustments import BAND, LIMITS, MEASURED, SOLVED, STATED, Adjustments, Amount, own_values
+from xlmc.outputs.live.kinds import KINDS
+
+__all__ = ["changed_text", "in_words"]
+
+_HEADINGS_OF_KINDS: Final = {spec.key: spec.heading for kind in KINDS for spec in FAMILIES[kind].parameters}
+
+
+def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
+    """Say what differs, a phrase each: `friction: High 0.75 → 0.85`; also of what the workbook no longer has."""
+    found = []
+    for of, name, key, value in adjustments.each():
+        own = own_values(definitions, of, name, adjustments.kind(of, name))
+        if key in own:
+            label = changed_text(definitions, of, name, key, own[key], value)
+        else:
+            number = _amount_text(key, value)
+            label = f"{LIMITS.get(key, key.replace('_', ' '))} {number} (no longer in the workbook)"
+        found.append(f"{name}: {label}")
+    return found
+
+
+def changed_text(
+    definitions: Definitions, of: str, name: str, key: str, before: Parameter | bool | str | None, after: Amount
+) -> str:
+    """Write a change: `High 0.75 → 0.85`, `frozen`, `at least 0 → 0.1`."""
+    if key == "frozen":
+        return "frozen" if after else "not frozen"
+    if key == "used":
+        return "used" if after else "not used"
+    if of == "correlation":
+        heading = "correlation"
+    elif of in ("decision", "solve"):
+        heading = {"value": "value", **SOLVED}[key]
+    elif of != "assumption":
+        heading = {**LIMITS, **MEASURED, **STATED}[key]
+    elif key in BAND:
+        heading = "band from" if key == "band_low" else "band to"
+        return f"{heading} {_amount_text(key, after)} %"
+    elif key in ("base", "kind"):
+        heading = {"base": "value", "kind": "kind"}[key]
+    else:
+        assumption = next(each for each in definitions.assumptions if each.name == name)
+        heading = {**_HEADINGS_OF_KINDS, **assumption.headings}[key]
+    choices = next((each for each in definitions.decisions if of == "decision" and each.name == name), None)
+    if choices is not None and choices.contents:
+        old = "another" if before is None else choices.shown(float(before))  # type: ignore[arg-type]  # its value
+        return f"{heading} {old} → {choices.shown(float(after))}"
+    shown = "none" if before is None else _amount_text(key, before)
+    return f"{heading} {shown} → {_amount_text(key, after)}"
+
+
+def _amount_text(key: str, value: Parameter | Amount) -> str:
+    """Write a value: `0.75`, `51 %`; `none` for what is taken away; `on` and `off` of a switch."""
+    if isinstance(value, bool):
+        return ("off", "on")[value]
+    if isinstance(value, str):
+        return value
+    return f"{given_text(value)} %" if key == "central" else given_text(value)

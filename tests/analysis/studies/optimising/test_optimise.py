@@ -14,7 +14,8 @@ from workbook_files import workbook_of
 
 import xlmc
 from xlmc.analysis.studies.optimising.candidates import Axis
-from xlmc.analysis.studies.optimising.measures import Reader, apart
+from xlmc.analysis.studies.optimising.goal_text import Reader
+from xlmc.analysis.studies.optimising.measures import apart
 from xlmc.errors import DefinitionError, SimulationError
 from xlmc.montecarlo.loop.candidates import CandidateTrials
 

@@ -18,7 +18,8 @@ from numpy.typing import NDArray
 from xlmc.analysis.studies.comparison.variations import names_of, with_plain_sampling
 from xlmc.analysis.studies.decisions import values_text
 from xlmc.analysis.studies.optimising.candidates import Ended, Space, Standing, Tried
-from xlmc.analysis.studies.optimising.measures import Goal, Measured, Reader, Requirement
+from xlmc.analysis.studies.optimising.goal_text import Reader
+from xlmc.analysis.studies.optimising.measures import Goal, Measured, Requirement
 from xlmc.analysis.studies.optimising.search import search
 from xlmc.analysis.studies.optimising.selection import Rival, indifference_of, judged, leader, race, rivals_of
 from xlmc.analysis.studies.scenario_workbook import edited_workbook

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
+from templates.writer.cached import computed
 from xlmc.engine.engine import Target
 from xlmc.engine.engines import ENGINES
 from xlmc.engine.graph.lowering import Lowering, lower_until_complete
@@ -17,7 +18,7 @@ from xlmc.excel.workbook.workbook import CellContent, CellValue, Workbook
 from xlmc.montecarlo.model.loading import build_model
 from xlmc.montecarlo.model.model import CompiledModel
 
-__all__ = ["computed_at", "model_of", "named_cells", "with_typed"]
+__all__ = ["computed_at", "model_of", "named_cells", "values_of", "with_typed"]
 
 
 def model_of(workbook: Workbook) -> CompiledModel:
@@ -50,6 +51,12 @@ def with_typed(workbook: Workbook, values: Mapping[str | Cell, CellValue]) -> Wo
         number = float(value) if isinstance(value, int) and not isinstance(value, bool) else value
         sheets[cell.sheet] = replace(sheet, cells={**sheet.cells, (cell.row, cell.column): CellContent(number)})
     return replace(workbook, sheets=sheets)
+
+
+def values_of(workbook, wanted):
+    """The values of cells, given by name, with every formula computed."""
+    done, at = computed(workbook), named_cells(workbook)
+    return [done[at[name].sheet, at[name].row - 1, at[name].column - 1] for name in wanted]
 
 
 def computed_at(workbook, inputs, wanted):

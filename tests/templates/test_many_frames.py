@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from simulated import simulated
-from typed_cells import model_of, named_cells, with_typed
+from typed_cells import model_of, values_of, with_typed
 
-from templates.writer.cached import computed
 from xlmc.excel.address import Cell
 
 EDITIONS = [("video-speed", 3600 / 5280, 32.174), ("video-speed-si", 3.6, 9.80665)]
@@ -18,12 +17,6 @@ def entered(book, times, positions, typed=None):
     cells = {Cell("Record", 6 + i, 2): float(time) for i, time in enumerate(times)}
     cells |= {Cell("Record", 6 + i, 3): float(place) for i, place in enumerate(positions)}
     return with_typed(book, cells | (typed or {}))
-
-
-def shown(book, wanted):
-    """The values of named cells, every formula computed."""
-    done, at = computed(book), named_cells(book)
-    return [done[at[symbol].sheet, at[symbol].row - 1, at[symbol].column - 1] for symbol in wanted]
 
 
 def uneven(rng, frames, rate=30):
@@ -40,7 +33,7 @@ def test_speed_and_deceleration_come_back_from_uneven_frames(name, per_second, g
     pixels = 900 - pixels if backward else 100 + pixels
     wanted = [f"v_{'kmh' if name.endswith('si') else 'mph'}", f"vend_{'kmh' if name.endswith('si') else 'mph'}"]
     book = entered(read(name), times, pixels, {"scale": 0.05})
-    mean, end, slowing, first, sd, holds = shown(book, [*wanted, "a_fit", "v_first", "rec_sd", "checks_hold"])
+    mean, end, slowing, first, sd, holds = values_of(book, [*wanted, "a_fit", "v_first", "rec_sd", "checks_hold"])
     assert first == pytest.approx(20, rel=1e-9)
     assert slowing == pytest.approx(0.4, rel=1e-9)
     assert end == pytest.approx((20 - 0.4 * g * t[-1]) * per_second, rel=1e-9)
@@ -54,8 +47,8 @@ def test_times_as_counted_by_the_mean_rate_would_be_wrong(read):
     times = uneven(np.random.default_rng(2), 20)
     t = times - times[0]
     places = 60 * t - 0.5 * 32.174 * t**2 / 2
-    right, ratio = shown(entered(read("video-speed"), times, places), ["v_end", "rec_longest"])
-    wrong, even = shown(entered(read("video-speed"), np.linspace(0, t[-1], 20), places), ["v_end", "rec_longest"])
+    right, ratio = values_of(entered(read("video-speed"), times, places), ["v_end", "rec_longest"])
+    wrong, even = values_of(entered(read("video-speed"), np.linspace(0, t[-1], 20), places), ["v_end", "rec_longest"])
     assert right == pytest.approx(60 - 0.5 * 32.174 * t[-1], rel=1e-9)
     assert abs(wrong - right) > 1
     assert ratio > 2
@@ -65,7 +58,9 @@ def test_times_as_counted_by_the_mean_rate_would_be_wrong(read):
 def test_a_steady_speed_is_a_straight_line(read):
     times, places = [0.0, 0.1, 0.23, 0.31], [0.0, 4.1, 9.0, 12.6]
     slope, _ = np.polyfit(times, places, 1)
-    found = shown(entered(read("video-speed"), times, places, {"bend": 0}), ["v_end", "v_first", "a_fit", "rec_free"])
+    found = values_of(
+        entered(read("video-speed"), times, places, {"bend": 0}), ["v_end", "v_first", "a_fit", "rec_free"]
+    )
     assert found == [pytest.approx(slope), pytest.approx(slope), "–", 2]
 
 
@@ -97,10 +92,10 @@ def test_marks_that_scatter_more_than_their_error_are_said(read):
     rng = np.random.default_rng(4)
     times = np.arange(20) / 30
     places = 50 * times + rng.standard_normal(20)
-    assert shown(entered(read("video-speed"), times, places, {"mark_error": 1.0}), ["check_table"]) == [True]
-    assert shown(entered(read("video-speed"), times, places, {"mark_error": 0.2}), ["check_table"]) == [False]
+    assert values_of(entered(read("video-speed"), times, places, {"mark_error": 1.0}), ["check_table"]) == [True]
+    assert values_of(entered(read("video-speed"), times, places, {"mark_error": 0.2}), ["check_table"]) == [False]
     gap = {Cell("Record", 10, 3): None}
-    assert shown(with_typed(entered(read("video-speed"), times, places), gap), ["check_table"]) == [False]
+    assert values_of(with_typed(entered(read("video-speed"), times, places), gap), ["check_table"]) == [False]
 
 
 def test_without_frames_two_marks_stand(read):

@@ -6,9 +6,8 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 from simulated import simulated
-from typed_cells import computed_at, model_of, named_cells, with_typed
+from typed_cells import computed_at, model_of, values_of, with_typed
 
-from templates.writer.cached import computed
 from xlmc.excel.address import Cell
 
 EDITIONS = [("edr-speed", 3600 / 5280), ("edr-speed-si", 3.6)]
@@ -20,12 +19,6 @@ def pasted(book, table, typed=None):
     """The book with rows of time, speed, brake on its sheet Record."""
     cells = {Cell("Record", FIRST_ROW + i, 1 + j): value for i, row in enumerate(table) for j, value in enumerate(row)}
     return with_typed(book, cells | (typed or {}))
-
-
-def shown(book, wanted):
-    """The values of named cells, every formula computed."""
-    done, at = computed(book), named_cells(book)
-    return [done[at[symbol].sheet, at[symbol].row - 1, at[symbol].column - 1] for symbol in wanted]
 
 
 def record(step, count, brakes_at, before, rate, words, rounded=0.0):
@@ -44,7 +37,7 @@ def read_off(read):
     """`read_off(name, table, inputs, wanted)`: values of cells with a table pasted, every formula computed."""
 
     def values(name, table, inputs, wanted):
-        return shown(pasted(read(name), table, inputs), wanted)
+        return values_of(pasted(read(name), table, inputs), wanted)
 
     return values
 
@@ -152,8 +145,8 @@ def test_the_table_of_a_report_is_read_as_it_is_printed(name, units, written, re
     unit = "kmh" if name.endswith("-si") else "mph"
     wanted = [f"vi_{unit}", "a_brake", "x_record", "t_braked", "t_released", "checks_hold"]
     given = {"kappa": KAPPA, "bias": BIAS, "q": 0.0, "tau": 0.04}
-    found = shown(with_typed(read(name), cells | given), wanted)
-    alone = shown(pasted(read(name), plain, given), wanted)
+    found = values_of(with_typed(read(name), cells | given), wanted)
+    alone = values_of(pasted(read(name), plain, given), wanted)
     assert found[:4] == pytest.approx(alone[:4], rel=1e-6)
     released = max(time for time, _, brake in plain if brake == "Off")
     assert found[4:] == [pytest.approx(0.04 - released), True]
@@ -168,9 +161,9 @@ def test_a_table_that_cannot_be_read_is_said(spoilt, read):
     _, plain = record(0.5, 11, -1.717, 50, 12, ("Off", "On"))
     printed = as_printed(plain, "mph", lambda v: v)
     cells = {Cell("Record", FIRST_ROW - 1 + i, 1 + j): v for i, row in enumerate(printed) for j, v in enumerate(row)}
-    assert shown(with_typed(read("edr-speed"), cells), ["check_table"]) == [True]
+    assert values_of(with_typed(read("edr-speed"), cells), ["check_table"]) == [True]
     cells |= {Cell("Record", FIRST_ROW + row, 1 + column): value for (row, column), value in spoilt.items()}
-    assert shown(with_typed(read("edr-speed"), cells), ["check_table"]) == [False]
+    assert values_of(with_typed(read("edr-speed"), cells), ["check_table"]) == [False]
 
 
 @pytest.mark.parametrize(("name", "per_second"), EDITIONS)
@@ -180,11 +173,11 @@ def test_speeds_at_further_events_follow_from_each_delta_v(name, per_second, rea
     events = {"dv_1st": -4.0 * per_second, "t_2nd": 0.8, "f_2nd": 0.3, "dv_2nd": -9.0 * per_second, "t_3rd": 1.5}
     given = events | {"g": g, "tau": 0.0, "f": 0.1, "q": 0.0, "kappa": 0.0, "v_last": 30 * per_second}
     wanted = [f"vi_{unit}", f"v_2nd_{unit}", f"v_3rd_{unit}"]
-    first, second, third = shown(with_typed(read(name), given), wanted)
+    first, second, third = values_of(with_typed(read(name), given), wanted)
     assert first == pytest.approx(30 * per_second)
     assert second == pytest.approx((26 - 0.3 * g * 0.8) * per_second)
     assert third == pytest.approx(second - 9 * per_second)
-    assert shown(read(name), wanted[1:]) == ["–", "–"]
+    assert values_of(read(name), wanted[1:]) == ["–", "–"]
     run = simulated(model_of(with_typed(read(name), given)), 4_000)
     waits = ["Vehicle speed at the second event", "Vehicle speed at the third event"]
     assert set(waits) < set(run.forecasts)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import kstest
 from simulated import simulated
-from typed_cells import computed_at, model_of, named_cells, with_typed
+from typed_cells import computed_at, model_of, values_of, with_typed
 
 from templates.writer.cached import computed
 from xlmc.excel.address import Cell
@@ -28,12 +28,6 @@ def entered(book, tests, typed=None):
         for j, value in enumerate(row)
     }
     return with_typed(book, cells | (typed or {}))
-
-
-def shown(book, wanted):
-    """The values of named cells, every formula computed."""
-    done, at = computed(book), named_cells(book)
-    return [done[at[symbol].sheet, at[symbol].row - 1, at[symbol].column - 1] for symbol in wanted]
 
 
 def speed_of(b0, b1, profile):
@@ -58,7 +52,7 @@ def test_one_test_returns_its_own_speed_whatever_b0_is(name, profile, b0, read):
     given = barrier(name, 3650, profile, 66, {"b0_1": b0})
     unit = "kmh" if name.endswith("-si") else "mph"
     book = entered(read(name), [(1, 3650, 35.1, *profile, 66)], given)
-    speed, holds = shown(book, [f"closing_{unit}", "check_tests"])
+    speed, holds = values_of(book, [f"closing_{unit}", "check_tests"])
     assert speed == pytest.approx(35.1, rel=1e-12)
     assert holds is True
     assert computed(book)["Stiffness", FIRST_ROW - 1, 20] == pytest.approx(0, abs=1e-12)
@@ -66,7 +60,7 @@ def test_one_test_returns_its_own_speed_whatever_b0_is(name, profile, b0, read):
 
 def test_a_b_and_g_are_those_of_the_test(read):
     book = entered(read("crush-energy"), [(1, 3650, 35.0, *PROFILES["even"], 66)], {"b0_1": 5.0})
-    b1, force, stiffness, energy = shown(book, ["b1_used_1", "A_1", "B_1", "G_1"])
+    b1, force, stiffness, energy = values_of(book, ["b1_used_1", "A_1", "B_1", "G_1"])
     mass, to_feet = 3650 / 32.174, 5280 / 3600
     assert b1 == pytest.approx((35 - 5) / 20)
     assert force == pytest.approx(12 * mass * 5 * to_feet * 1.5 * to_feet / 66)
@@ -92,7 +86,7 @@ def test_a_straight_line_comes_back_from_tests_of_other_weights_and_widths(name,
     for row in tests:  # as fast as the same energy per width makes this weight
         row[2] *= np.sqrt(mean_weight / mean_width / (row[1] / row[-1]))
     book = entered(read(name), tests, {"line_2": 1})
-    found = shown(book, ["b0_used_2", "b1_used_2", "line_sd_2", "lined_1", "check_tests"])
+    found = values_of(book, ["b0_used_2", "b1_used_2", "line_sd_2", "lined_1", "check_tests"])
     assert found[:2] == pytest.approx([b0, b1], rel=2e-4)
     assert found[2] == pytest.approx(0, abs=1e-3)
     assert found[3:] == [0, True]
@@ -103,7 +97,7 @@ def test_the_line_is_that_of_least_squares(read):
     speeds, depths = np.array([19.2, 25.3, 29.8, 35.4, 40.1]), np.array([9.0, 13.0, 17.5, 20.0, 24.0])
     tests = [(1, 3600, speed, *[depth] * 6, 64) for speed, depth in zip(speeds, depths, strict=True)]
     wanted = ["line_b0_1", "pass_1_5", "line_sd_1", "Sxx_1", "level_1"]
-    found = shown(entered(read("crush-energy"), tests, {"line_1": 1}), wanted)
+    found = values_of(entered(read("crush-energy"), tests, {"line_1": 1}), wanted)
     slope, intercept = np.polyfit(depths, speeds, 1)
     rest = speeds - intercept - slope * depths
     around = np.sum((depths - depths.mean()) ** 2)
@@ -163,4 +157,4 @@ def test_the_scatter_is_drawn_as_students_t_and_held_without_tests(read):
     ids=["a number missing", "no such vehicle", "slower than b0", "negative crush", "no line"],
 )
 def test_what_is_no_test_is_said(tests, typed, read):
-    assert shown(entered(read("crush-energy"), tests, typed), ["check_tests"]) == [False]
+    assert values_of(entered(read("crush-energy"), tests, typed), ["check_tests"]) == [False]

@@ -291,7 +291,7 @@ def _grid_of(x: Floats) -> _Grid | None:
     """Return the grid that ascending values lie on, where each of its points has several of them; otherwise None."""
     if x.size < _LEAST_ON_GRID:
         return None
-    few = np.unique(x[:: max(x.size // _LEAST_ON_GRID, 1)])
+    few = np.unique(x[:: x.size // _LEAST_ON_GRID])
     if few.size < 3 or few.size > _LEAST_ON_GRID // 2:
         return None  # too many different values, which a few of them show
     points = np.unique(x)

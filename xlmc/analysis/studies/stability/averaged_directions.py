@@ -109,7 +109,7 @@ def _turn(case: Case, tree: ir.Expression, cell: Cell) -> float | None:
 def _numbers(case: Case, cell: Cell, of: Sequence[ir.Expression]) -> Floats | None:
     """`(k, n)` the numbers of k directions; None if one has no node."""
     nodes = [case.trees.node_of(one, cell) for one in of]
-    if any(node is None or node not in case.values for node in nodes):
+    if any(node not in case.values for node in nodes):
         return None
     return np.array([np.broadcast_to(case.number(node), (case.n,)) for node in nodes if node is not None])
 

@@ -82,7 +82,7 @@ def divisions(case: Case, cell: Cell) -> list[Division]:
 
 def _division(case: Case, cell: Cell, tree: ir.Expression, factor: ir.Expression) -> Division | None:
     node = case.trees.node_of(factor, cell)
-    if node is None or node not in case.values or isinstance(factor, ir.Number):
+    if node not in case.values or isinstance(factor, ir.Number):
         return None
     values = case.number(node)
     values = values[np.isfinite(values)]
@@ -123,7 +123,7 @@ def left_of(case: Case, cell: Cell, tree: ir.Expression, trial: int) -> float:
 
 def _size(case: Case, cell: Cell, tree: ir.Expression, trial: int) -> float:
     node = case.trees.node_of(tree, cell)
-    if node is None or node not in case.values:
+    if node not in case.values:
         return 0.0
     size = abs(float(case.number(node)[trial]))
     return size if np.isfinite(size) else 0.0
@@ -145,7 +145,7 @@ def culprit(case: Case, cell: Cell, trials: Sequence[int]) -> ir.Expression | No
 
 def _heals(case: Case, cell: Cell, part: ir.Expression, trials: Sequence[int]) -> bool:
     whole, node = case.node[cell], case.trees.node_of(part, cell)
-    if node is None or node not in case.values or isinstance(part, ir.Number):
+    if node not in case.values or isinstance(part, ir.Number):
         return False
     wanted, cured = _exact(case, whole, trials), _exact(case, node, trials)
     before = np.abs(case.number(whole)[list(trials)] - wanted)

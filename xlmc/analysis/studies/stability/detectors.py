@@ -174,7 +174,7 @@ def _left(case: Case, cell: Cell, part: ir.Expression) -> float:
     if angles_in_degrees(part) is None or not isinstance(part, ir.Binary) or part.operator != "-":
         return 1.0
     nodes = [case.trees.node_of(tree, cell) for tree in (part, part.left, part.right)]
-    if any(node is None or node not in case.values for node in nodes):
+    if any(node not in case.values for node in nodes):
         return 1.0
     difference, first, second = (np.abs(case.number(node)) for node in nodes if node is not None)
     with np.errstate(all="ignore"):

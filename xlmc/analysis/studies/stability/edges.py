@@ -77,7 +77,7 @@ def _edge(case: Case, cell: Cell, part: ir.Expression) -> _Edge | None:
             row = function_named(name)
             domain = _OVERFLOWS.get(name) or (None if row is None else row.facts.domain)
             node = None if domain is None else case.trees.node_of(arguments[0], cell)
-            if domain is not None and node is not None and node in case.values:
+            if domain is not None and node in case.values:
                 return _Edge(name, arguments[0], node, domain, every)
     return None
 
@@ -85,7 +85,7 @@ def _edge(case: Case, cell: Cell, part: ir.Expression) -> _Edge | None:
 def _of_power(case: Case, cell: Cell, name: str, base: ir.Expression, exponent: ir.Expression) -> _Edge | None:
     """Return the domain of the base of a power: 0 and above in the trials whose exponent is no whole number."""
     node, powers = case.trees.node_of(base, cell), _numbers(case, cell, exponent)
-    if node is None or node not in case.values or powers is None or _is_of_squares(base):
+    if node not in case.values or powers is None or _is_of_squares(base):
         return None
     broken = np.isfinite(powers) & (powers != np.rint(powers))
     return _Edge(name, base, node, Domain(0.0), np.asarray(broken)) if broken.any() else None

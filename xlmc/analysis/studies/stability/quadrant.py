@@ -70,7 +70,7 @@ def arctangents(case: Case, cell: Cell) -> Iterator[Arctangent]:
         if isinstance(part, ir.Call) and part.name == "ATAN" and len(part.arguments) == 1:
             ratio = _quotient(case, part.arguments[0])
             node = case.trees.node_of(part, cell)
-            if ratio is not None and node is not None and node in case.values and node not in seen:
+            if ratio is not None and node in case.values and node not in seen:
                 seen.add(node)
                 above, below = ratio
                 divisor = case.trees.node_of(below, cell)

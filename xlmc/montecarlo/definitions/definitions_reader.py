@@ -171,7 +171,7 @@ def _definitions(
 
         in_cells = in_cell_forecasts(workbook, calls, assumptions, computed, central, answers, findings)
         forecasts = *forecasts, *in_cells
-    filters, own = _by_reach(filters, dialogs.filters, forecasts, findings)
+    filters, own = _by_reach((*filters, *dialogs.filters), forecasts, answers, findings)
     _remark_on_calls(calls, settings, findings)
     decisions = read_decisions(workbook, tables["xlmc_decisions"], computed, findings)
     decisions = *decisions, *_not_in(decisions, dialogs.decisions)
@@ -301,13 +301,17 @@ def _take_pairs(taken: Sequence[Correlation], more: Iterable[Correlation], findi
 
 
 def _by_reach(
-    filters: Iterable[Filter], of_dialogs: Iterable[Filter], forecasts: Sequence[Forecast], findings: Findings
+    filters: Iterable[Filter], forecasts: Sequence[Forecast], claims: Claims, findings: Findings
 ) -> tuple[tuple[Filter, ...], tuple[Filter, ...]]:
-    """Return the filters of all forecasts, and those of some only, with these forecasts as they are called."""
-    names = {name_key(each.name): each.name for each in forecasts}
+    """Return the filters of all forecasts, and those of some only, with these forecasts as they are called.
+
+    `claims` has the names of forecasts whose rows have mistakes, too.
+    """
+    names = {key: name for key, (name, _) in claims.names.items()}
+    names |= {name_key(each.name): each.name for each in forecasts}
     everywhere: list[Filter] = []
     own: list[Filter] = []
-    for each in (*filters, *of_dialogs):
+    for each in filters:
         unknown = [name for name in each.only_for if name_key(name) not in names]
         if unknown:
             hint = did_you_mean(unknown[0], names.values()) if names else "Define the forecast first"

@@ -48,7 +48,7 @@ class SamplingMethod(NamedTuple):
         margins: takes the seed, the dimension of each name and the trials in a replicate; gives a margin for each name.
         replicate: takes the trials asked for and gives those in each replicate; None if trials are independent of each
             other, so that a run may end after any of them.
-        also: other names that a workbook may give it, as `distributions.naming.plain` makes them.
+        also: other names that a workbook may give it, as `distributions.spelling.plain` writes them.
         ordered: it spreads the first dimensions best, so a short run finds which assumptions matter most.
         compared: `xlmc methods` tries it.
         limit: why more trials may not bring the accuracy asked for, in a clause; empty where they always do.

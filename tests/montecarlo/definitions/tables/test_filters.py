@@ -160,3 +160,9 @@ def test_a_filter_may_be_for_some_forecasts_only(read, only_problem):
     assert [(each.name, each.only_for) for each in found.forecast_filters] == [("e", ("Speed",))]
     assert [each.name for each in found.filters] == ["Positive"]
     only_problem("Answers!A11", "Only for names 'Sped'", "Speed", {**heading, "Answers!H11": "Sped"}, table)
+
+
+def test_a_forecast_whose_row_has_a_mistake_is_one_nonetheless(only_problem):
+    table = {"xlmc_filters": "Answers!A10:H12"}
+    cells = {"Answers!H10": "Only for", "Answers!H11": "speed", "Answers!E2": "fast"}
+    only_problem("Answers!E2", "Threshold holds the text 'fast'", "Type a number", cells, table)

@@ -147,3 +147,17 @@ def test_what_may_mean_two_things_is_refused(read, blocks):
 def test_a_misspelt_table_is_not_ignored(read, blocks):
     (problem,) = read(cells(blocks, "Friction", 0.7), {"xlmc_scenario": "Scenarios!A1:C2"}).problems
     assert "did you mean xlmc_scenarios?" in problem.message
+
+
+@pytest.mark.parametrize(
+    ("heading", "value", "where", "mistake"),
+    [
+        ("Weight", "frozen", "Inputs!D2", "heavy"),
+        ("weight low", 5, "Inputs!E2", "heavy"),
+        ("e", "below .5", "Answers!C11", "none at all"),
+    ],
+)
+def test_a_row_with_a_mistake_is_a_row_nonetheless(read, blocks, heading, value, where, mistake):
+    """There is one problem, that of the row: its name is no heading that means nothing."""
+    (problem,) = read({**cells(blocks, heading, value), where: mistake}, TABLE).problems
+    assert problem.where == where

@@ -160,14 +160,18 @@ class _Headings:
         self._assumptions = by_names(assumptions)
         self._filters = {name_key(each.name): each for each in filters if each.evidence is None}
         self._rows = list(_named_rows(workbook, tables))
+        written = {name for name, row in self._rows if row.table.kind in ("xlmc_assumptions", "xlmc_filters")}
+        self._faulty = written - self._assumptions.keys() - self._filters.keys()
 
-    def column(self, heading: str, where: Cell) -> _Column:
-        """Return what it changes.
+    def column(self, heading: str, where: Cell) -> _Column | None:
+        """Return what it changes; None for a row with a mistake, which is a problem already.
 
         Raises:
             DefinitionError: nothing, or more than one thing.
         """
         found = [*self._of_names(heading), *self._of_columns(heading)]
+        if not found and name_key(heading) in self._faulty:
+            return None
         if not found:
             return self._of_cell(heading, where)
         if len(found) > 1:

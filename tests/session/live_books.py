@@ -247,6 +247,40 @@ def book_with_decisions(path, *, high=1.5, listed=False, more=()):
     return path
 
 
+def book_of_dates(path):
+    """A workbook of a date, a percentage and an amount of money, as cells, rows and answers show them."""
+    book = openpyxl.Workbook()
+    model, sheet = book.active, book.create_sheet("T")
+    model.title = "M"
+    day, share, money = "yyyy-mm-dd", "0.0%", '"$"#,##0'
+    cells = {"A1": (46082.0, day), "A2": (0.35, share), "A3": (48_000.0, money), "A4": (2.0, "General")}
+    cells |= {"B1": ("=A1+A4", day), "B2": ("=A3*(1-A2)", money)}
+    for cell, (content, shown) in cells.items():
+        model[cell], model[cell].number_format = content, shown
+    tables = {
+        "xlmc_assumptions": [
+            ["Name", "Cell", "Distribution", "Low", "High", "Mean", "Std dev"],
+            ["start", "=M!A1", "Uniform", 46054.0, 46113.0, None, None],
+            ["discount", "=M!A2", "Uniform", 0.3, 0.4, None, None],
+            ["price", "=M!A3", "Normal", None, None, 48_000.0, 3_000.0],
+        ],
+        "xlmc_forecasts": [["Name", "Cell"], ["end", "=M!B1"], ["net price", "=M!B2"]],
+        "xlmc_filters": [["Name", "Cell", "At most"], ["early", "=M!B1", 46110.0]],
+        "xlmc_decisions": [["Name", "Cell", "Low", "High", "Step"], ["days", "=M!A4", 1.0, 5.0, 1.0]],
+        "xlmc_settings": [["Setting", "Value"], ["Trials", 2_000]],
+    }
+    top = 1
+    for name, lines in tables.items():
+        for row, line in enumerate(lines, start=top):
+            for column, content in enumerate(line, start=1):
+                sheet.cell(row, column, content)
+        bottom = top + len(lines) - 1
+        sheet.add_table(Table(displayName=name, ref=f"A{top}:{chr(64 + len(lines[0]))}{bottom}"))
+        top = bottom + 2
+    book.save(path)
+    return path
+
+
 def with_column(path, target, heading):
     """The workbook with one more column in its table of assumptions."""
     book = openpyxl.load_workbook(path)

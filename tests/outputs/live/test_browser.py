@@ -12,7 +12,7 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 import openpyxl
-from live_books import book_of_decisions, book_of_readings, simple, wide_book
+from live_books import book_of_dates, book_of_decisions, book_of_readings, simple, wide_book
 from openpyxl.worksheet.table import Table
 from simulated import simulated
 from websockets.sync.server import serve
@@ -922,6 +922,20 @@ def test_a_chart_is_zoomed_to_its_range_and_back(chromium, running, tmp_path):
     page.click(page.of(".views input", "each.value === given[0]", "frequency"))
     page.click(zoom)
     assert page.run(ends)[0] == whole
+
+
+def test_a_date_is_typed_and_moved_as_a_date(chromium, running, tmp_path):
+    page = Page(chromium, running(book=book_of_dates(tmp_path / "case.xlsx")))
+    low = page.box(page.card("start"), "Low")
+    assert low.get_attribute("value") == "2026-02-01"
+    page.type(low, "soon")
+    assert "Type a date, as 2026-03-01." in page.card("start").text
+    page.at_rest(lambda: page.type(low, "2026-02-10"))
+    page.at_rest(lambda: page.slider("High of start").send_keys("\ue014"))
+    assert page.changes == ["start: Low 2026-02-01 → 2026-02-10", "start: High 2026-04-01 → 2026-04-02"]
+    assert page.slider("High of start").get_attribute("aria-valuetext") == "2026-04-02"
+    page.at_rest(lambda: page.type(low, "2026-02-05 to 2026-03-05"))
+    assert page.changes == ["start: Low 2026-02-01 → 2026-02-05", "start: High 2026-04-01 → 2026-03-05"]
 
 
 def test_as_many_bars_are_drawn_as_are_typed(chromium, running, tmp_path):

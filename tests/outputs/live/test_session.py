@@ -6,6 +6,7 @@ import json
 import math
 import re
 from dataclasses import replace
+from datetime import datetime, timedelta
 from itertools import chain, repeat
 
 import numpy as np
@@ -13,6 +14,7 @@ import openpyxl
 import pytest
 from live_books import (
     CASE,
+    book_of_dates,
     book_of_decisions,
     book_of_readings,
     book_with_decisions,
@@ -311,6 +313,38 @@ def test_all_tabs_are_made_of_the_run_at_rest(case):
             assert_quadrants(part["pair"]["quadrants"], run.inputs[FRICTION], run.forecasts[names[1]])
         else:
             assert names[0] in part["html"]
+
+
+def test_dates_percentages_and_money_are_told_as_their_cells_show_them(tmp_path):
+    model = load(book_of_dates(tmp_path / "case.xlsx"))
+    session = Session(model)
+    session.receive(PageMessage("view", seen(["end"], "step", trial=1)))
+    (part,) = [each for each in settle(session) if each["kind"] == "part"]
+    drawn = {name: float(values[1]) for name, values in session.rest.prior.items()}
+    for text in (str(_EPOCH + timedelta(days=int(drawn["start"])))[:10], f"{100 * drawn['discount']:.6g} %"):
+        assert f">{text}<" in part["html"]
+    session.receive(change("start", "low", 46_060.0))
+    session.receive(change("start", "base", 46_080.0))
+    session.receive(change("discount", "high", 0.45))
+    session.receive(change("price", "mean", 50_000.0))
+    (state,) = session.receive(change("early", "at_most", 46_130.0, of="filter")).all
+    assert state["changes"] == [
+        "start: Low 2026-02-01 → 2026-02-07",
+        "start: value 2026-03-01 → 2026-02-27",
+        "discount: High 40 % → 45 %",
+        "price: Mean $48,000 → $50,000",
+        "early: at most 2026-03-29 → 2026-04-18",
+    ]
+    start, discount, _ = state["assumptions"]
+    assert [each["form"]["moment"] for each in (start, *start["numbers"], *state["filters"])] == ["day"] * 4
+    assert (start["step"], state["filters"][0]["step"]) == (1.0, 1.0)
+    assert discount["form"] is None
+    edited(tmp_path / "case.xlsx", tmp_path / "edited.xlsx", {("start", "Low"): 46_060.0, ("price", "Mean"): 5e4})
+    told = what_changed(model, load(tmp_path / "edited.xlsx"))
+    assert told == ["start: Low 2026-02-01 → 2026-02-07", "price: Mean $48,000 → $50,000"]
+
+
+_EPOCH = datetime(1899, 12, 30)
 
 
 @pytest.mark.parametrize("trial", [0, 1, 2, 3_000, 10**9])

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import Final
 
 from xlmc.analysis.results.statements.in_words import given_text
-from xlmc.montecarlo.definitions.definitions import Definitions, Parameter
+from xlmc.excel.address import Cell
+from xlmc.montecarlo.definitions.definitions import Assumption, Decision, Definitions, Filter, Parameter
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.outputs.live.adjustments import BAND, LIMITS, MEASURED, SOLVED, STATED, Adjustments, Amount, own_values
 from xlmc.outputs.live.kinds import KINDS
@@ -55,14 +56,33 @@ def changed_text(
     if choices is not None and choices.contents:
         old = "another" if before is None else choices.shown(float(before))  # type: ignore[arg-type]  # its value
         return f"{heading} {old} → {choices.shown(float(after))}"
-    shown = "none" if before is None else _amount_text(key, before)
-    return f"{heading} {shown} → {_amount_text(key, after)}"
+    row = next((each for each in _rows_with_forms(definitions, of) if each.name == name), None)
+    old, new = ("none" if value is None else _amount_text(key, value, row) for value in (before, after))
+    return f"{heading} {old} → {new}"
 
 
-def _amount_text(key: str, value: Parameter | Amount) -> str:
-    """Write a value: `0.75`, `51 %`; `none` for what is taken away; `on` and `off` of a switch."""
+def _rows_with_forms(definitions: Definitions, of: str) -> tuple[Assumption | Filter | Decision, ...]:
+    """Return the rows of a kind that say how their numbers are written."""
+    match of:
+        case "assumption":
+            return definitions.assumptions
+        case "filter":
+            return (*definitions.filters, *definitions.forecast_filters, *definitions.unused)
+        case "decision":
+            return definitions.decisions
+    return ()
+
+
+def _amount_text(key: str, value: Parameter | Amount, row: Assumption | Filter | Decision | None = None) -> str:
+    """Write a value: `0.75`, `51 %`; `none` for what is taken away; `on` and `off` of a switch; of a row with dates,
+    percentages or money as its cell shows it.
+    """
     if isinstance(value, bool):
         return ("off", "on")[value]
     if isinstance(value, str):
         return value
-    return f"{given_text(value)} %" if key == "central" else given_text(value)
+    if isinstance(value, Cell) or row is None:
+        return f"{given_text(value)} %" if key == "central" else given_text(value)
+    if isinstance(row, Assumption):
+        return row.form_of("low" if key == "base" else key, value).number(value)
+    return row.form.number(value) if key in (*LIMITS, "reading", "value") else given_text(value)

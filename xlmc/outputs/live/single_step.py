@@ -14,8 +14,9 @@ from xlmc.engine.engine import TEXT_RESULT, Column
 from xlmc.engine.graph.nodes import Target
 from xlmc.excel.functions.registry import Kind
 from xlmc.montecarlo.loop.blocks import fault_text
+from xlmc.montecarlo.model.cell_forms import content_in, forms_of
 from xlmc.montecarlo.model.forecast_filters import conditions_of
-from xlmc.montecarlo.number_text import count_text, number_text
+from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.document.parts import Block, Paragraph, Table
 
@@ -25,6 +26,7 @@ if TYPE_CHECKING:
     from xlmc.engine.engine import Evaluator
     from xlmc.excel.address import Cell
     from xlmc.montecarlo.definitions.definitions import Filter
+    from xlmc.montecarlo.definitions.forms import Form
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
 
@@ -35,8 +37,6 @@ MOST_FORMULAS: Final = 1_000
 
 _TOGETHER: Final = 2_048
 """Trials that are computed at a time, as in a short run: the last bit of a trial may depend on where it stands."""
-
-_DIGITS: Final = 12
 
 _PREPARED: Final[WeakKeyDictionary[CompiledModel, Step]] = WeakKeyDictionary()
 
@@ -49,6 +49,7 @@ class Step:
         left: how many more there are.
         filters: what accepts trials, but for evidence that keeps them by chance: no run holds its random numbers.
         by_chance: that evidence.
+        forms: of each cell that is shown, how its numbers are written.
     """
 
     def __init__(self, model: CompiledModel) -> None:
@@ -65,6 +66,8 @@ class Step:
         targets += [Target(cell, cell) for cell in self._cells]
         kinds = [model.lowering.dag.types[model.lowering.target(each)] for each in targets]
         self._logical = [kind is Kind.LOGICAL for kind in kinds]
+        cells = tuple(dict.fromkeys((*(each.cell for each in model.live), *self._cells)))
+        self.forms: Mapping[Cell, Form] = dict(zip(cells, forms_of(model.workbook, cells), strict=True))
         self._evaluator: Evaluator = model.evaluator(targets, _TOGETHER)
 
     def at(
@@ -130,8 +133,11 @@ def step_html(run: RunResult, trial: int) -> str:
     step = _PREPARED[model]
     draws = drawn_in(run)
     holds, values = step.at(draws, trial)
-    text = {cell: _text(value) for cell, value in values.items()}
-    drawn = [(each.name, str(each.cell), _text(float(draws[each.name][trial])), each.units) for each in model.live]
+    text = {cell: _text(value, step.forms[cell]) for cell, value in values.items()}
+    drawn = [
+        (each.name, str(each.cell), _text(float(draws[each.name][trial]), step.forms[each.cell]), each.units)
+        for each in model.live
+    ]
     said_of = {True: "yes", False: "no", None: "error"}
     words = [(each, said_of[held]) for each, held in zip(step.filters, holds, strict=True)]
     words += [(each, "by chance") for each in step.by_chance]
@@ -170,10 +176,6 @@ def _verdict(run: RunResult, trial: int, step: Step, holds: Sequence[bool | None
     return f"{which} is accepted{weighted}."
 
 
-def _text(value: float | bool | str) -> str:
-    """Write what a cell holds."""
-    if isinstance(value, str):
-        return value
-    if isinstance(value, bool):
-        return "TRUE" if value else "FALSE"
-    return number_text(value, _DIGITS) if np.isfinite(value) else "no number"
+def _text(value: float | bool | str, form: Form) -> str:
+    """Write what a cell holds, as the cell shows it."""
+    return content_in(form, value) if isinstance(value, str) or np.isfinite(value) else "no number"

@@ -6,12 +6,13 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Final, Protocol, TypeVar
 
 from xlmc.analysis.results.statements.in_words import distribution_text, given_text, limits_text
+from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Filter
 from xlmc.montecarlo.number_text import count_text, styled_text
 from xlmc.outputs.live.adjustments import LIMITS, SOLVED, assumption_numbers
 
 if TYPE_CHECKING:
-    from xlmc.montecarlo.definitions.definitions import Assumption, Decision, Forecast, Solve
+    from xlmc.montecarlo.definitions.definitions import Assumption, Decision, Forecast, Parameter, Solve
     from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = ["what_changed"]
@@ -80,12 +81,17 @@ def _assumption(before: Assumption, after: Assumption) -> Iterator[str]:
     else:
         for key, (heading, value) in new.items():
             if value != old[key][1]:
-                yield f"{heading} {given_text(old[key][1])} → {given_text(value)}"
+                yield f"{heading} {_number(before, key, old[key][1])} → {_number(after, key, value)}"
     if before.frozen != after.frozen:
         yield "frozen" if after.frozen else "not frozen"
     if before.base != after.base:
-        values = ["blank" if base is None else given_text(base) for base in (before.base, after.base)]
+        values = ["blank" if each.base is None else _number(each, "low", each.base) for each in (before, after)]
         yield f"value {values[0]} → {values[1]}"
+
+
+def _number(assumption: Assumption, key: str, value: Parameter) -> str:
+    """Write a number of an assumption as its cell shows it; the cell of one that a formula computes."""
+    return given_text(value) if isinstance(value, Cell) else assumption.form_of(key, value).number(value)
 
 
 def _filter(before: Filter, after: Filter) -> Iterator[str]:

@@ -17,7 +17,9 @@ from xlmc.errors import DefinitionError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Decision, Definitions, Filter, Parameter
 from xlmc.montecarlo.definitions.evidence import Law, Within
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.run_options import RunOptions
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.definitions.tables.evidence_rows import check_sizes
 from xlmc.montecarlo.distributions.whole_numbers import WholeNumbers
 from xlmc.montecarlo.model.model import CompiledModel
@@ -44,7 +46,7 @@ from xlmc.outputs.live.adjustments import (
 from xlmc.outputs.live.adjustments_in_words import in_words
 from xlmc.outputs.live.kinds import in_kind, kinds_of
 from xlmc.outputs.live.protocol import Message
-from xlmc.outputs.page.payload import CONFIDENCE, signs_json
+from xlmc.outputs.page.payload import CONFIDENCE, form_json, signs_json
 
 __all__ = [
     "Shapes",
@@ -114,6 +116,7 @@ def _assumption(
     values = [each["value"] for each in numbers if each["drags"] and each["value"] is not None]
     values += [] if assumption.base is None else [assumption.base]
     step = _step(max(values) - min(values) if values else 0.0, max(map(abs, values), default=1.0))
+    form = PLAIN if assumption.base is None else assumption.form_of("base", assumption.base)
     return {
         "name": assumption.name,
         "units": assumption.units,
@@ -126,7 +129,8 @@ def _assumption(
         "frozen": assumption.frozen,
         "base": assumption.base,
         "ownBase": own.base,
-        "step": max(step, 1.0) if isinstance(assumption.family, WholeNumbers) else step,
+        "step": max(step, 1.0) if isinstance(assumption.family, WholeNumbers) else _step_in(form, step),
+        "form": _moment_json(form),
         "numbers": numbers,
         "band": None if assumption.data is not None else [changed.get(key, end) for key, end in BAND.items()],
         "changed": bool(changed),
@@ -136,13 +140,20 @@ def _assumption(
 def _number(assumption: Assumption, key: str, heading: str, before: Parameter) -> dict[str, Any]:
     value = assumption.given.get(key)
     drags = assumption.data is None and (key in _ON_AXIS or (key[:1] == "p" and key[1:2].isdigit()))
-    return _handle(
-        key, heading, value, before, drags=drags, cell=assumption.text_of(key) if key in assumption.stated else ""
-    )
+    form = PLAIN if value is None or isinstance(value, Cell) else assumption.form_of(key, value)
+    cell = assumption.text_of(key) if key in assumption.stated else ""
+    return _handle(key, heading, value, before, drags=drags, cell=cell, form=form)
 
 
 def _handle(
-    key: str, heading: str, value: Parameter | None, before: Parameter | None, *, drags: bool, cell: str = ""
+    key: str,
+    heading: str,
+    value: Parameter | None,
+    before: Parameter | None,
+    *,
+    drags: bool,
+    cell: str = "",
+    form: Form = PLAIN,
 ) -> dict[str, Any]:
     """Return a number that can be changed.
 
@@ -153,6 +164,7 @@ def _handle(
         before: in the workbook.
         drags: whether it lies on the axis of the quantity.
         cell: what computes it, in words; by default its cell.
+        form: how it is written.
     """
     return {
         "key": key,
@@ -162,8 +174,19 @@ def _handle(
         "cell": cell or str(value) if isinstance(value, Cell) else "",
         "drags": drags,
         "goes": key in REMOVABLE,
-        "step": _step(0.0, abs(value)) if isinstance(value, float | int) else 1.0,
+        "step": _step_in(form, _step(0.0, abs(value))) if isinstance(value, float | int) else 1.0,
+        "form": _moment_json(form),
     }
+
+
+def _moment_json(form: Form) -> dict[str, Any] | None:
+    """Return how a date or a time is written and read; None for other numbers, which are as they can be typed."""
+    return form_json(form) if form.kind is Kind.DATE else None
+
+
+def _step_in(form: Form, step: float) -> float:
+    """Return a step; of dates a day, of times an hour, of spans of time a minute: serial numbers say nothing."""
+    return {"day": 1.0, "time": 1 / 24, "span": 1 / 1440}[form.shows] if form.kind is Kind.DATE else step
 
 
 def _step(span: float, size: float) -> float:
@@ -236,7 +259,8 @@ def _filter(filter_: Filter, own: Filter, definitions: Definitions, *, changed: 
         "cell": str(filter_.cell),
         "says": says,
         "because": " · ".join(filter(None, (*_reach(filter_), filter_.because))),
-        "step": step,
+        "step": _step_in(filter_.form, step),
+        "form": _moment_json(filter_.form),
         "shape": shape,
         "changed": changed,
         "switches": filter_.name in definitions.switches,
@@ -255,12 +279,13 @@ def _limits(filter_: Filter, own: Filter, definitions: Definitions) -> Iterator[
     evidence = next((each for each in definitions.evidence if own.evidence and each.name == own.name), None)
     if evidence is None or filter_.evidence is None or own.evidence is None:
         for key, before in movable_limits(own).items():
-            yield _handle(key, LIMITS[key], getattr(filter_, key), before, drags=True)
+            yield _handle(key, LIMITS[key], getattr(filter_, key), before, drags=True, form=filter_.form)
         return
     now, known = measured_numbers(filter_.evidence), measured_numbers(own.evidence)
     for key, before in measured_numbers(evidence).items():
         value = before if now[key] == known[key] else now[key]  # a cell, where a formula computes it
-        yield _handle(key, MEASURED[key], value, before, drags=key == "reading")
+        form = filter_.form if key == "reading" else PLAIN
+        yield _handle(key, MEASURED[key], value, before, drags=key == "reading", form=form)
 
 
 def _law(filter_: Filter) -> Law | None:
@@ -348,7 +373,8 @@ def decision_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str
                 "units": each.units,
                 "cell": str(each.cell),
                 "says": f"tried: {each.values_text}",
-                "numbers": [_handle("value", "Value", each.base, before.base, drags=True)],
+                "numbers": [_handle("value", "Value", each.base, before.base, drags=True, form=each.form)],
+                "form": _moment_json(each.form),
                 "ends": ends,
                 "tried": tried,
                 "choices": choices,

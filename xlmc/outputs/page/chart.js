@@ -130,7 +130,7 @@ function chartOptions(width, ends, top, { units, form }, view) {
       {
         ...axis,
         label: units || " ",
-        space: Math.max(50, 7 * longest + 20),
+        space: Math.max(50, 7 * longest + (form.moment ? 8 : 20)), // dates stand close: few of them are round
         values: (_, splits) => splits.map((at) => formText(at, decimalsOf(splits[1] - splits[0]), form)),
         ...(form.moment ? { incrs: INCREMENTS } : {}),
         size: 42,

@@ -8,7 +8,8 @@ import { runInThisContext } from "node:vm";
 for (const path of ["page/numbers.js", "live/page/handles.js"]) {
   runInThisContext(readFileSync(new URL(`../../../../xlmc/outputs/${path}`, import.meta.url), "utf8"));
 }
-const { onStep, stepText, typedRange, Track } = runInThisContext("({ onStep, stepText, typedRange, Track })");
+const { formTyped, onStep, stepText, typedRange, Track } = runInThisContext("({ formTyped, onStep, stepText, typedRange, Track })");
+const DAYS = { factor: 1, before: "", after: "", moment: "day", epoch: 25569 };
 
 test("a value lies on the grid of its step, without the dust of binary fractions", () => {
   for (const [value, step, found] of [[0.31, 0.1, 0.3], [0.7000000000000001, 0.01, 0.7], [54, 10, 50], [-2.6, 0.5, -2.5],
@@ -19,6 +20,16 @@ test("a value lies on the grid of its step, without the dust of binary fractions
 test("a number has the decimals of its step, or more where it needs them", () => {
   for (const [value, step, text] of [[0.7, 0.01, "0.70"], [50, 10, "50"], [0.123456, 0.01, "0.123456"], [null, 1, ""],
     [undefined, 1, ""], [2, 0.5, "2.0"]]) assert.equal(stepText(value, step), text, `${value} by ${step}`);
+});
+
+test("dates are written and read as such", () => {
+  assert.equal(stepText(46082, 1, DAYS), "2026-03-01");
+  assert.equal(stepText(null, 1, DAYS), "");
+  const read = (text) => formTyped(text, null, DAYS);
+  const { low, high, middle } = typedRange("2026-03-01 to 2026-04-01", read);
+  assert.deepEqual([low, high, middle], [46082, 46113, null]);
+  assert.deepEqual(typedRange("2026-03-11 ± 10", read), { low: 46082, high: 46102, middle: 46092, share: false });
+  assert.equal(typedRange("2026-03-01", read), null);
 });
 
 test("two ends are read from one box", () => {

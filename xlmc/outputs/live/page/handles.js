@@ -7,9 +7,10 @@ const KNOB_SIDE = { low: "lower", lower_cutoff: "lower", at_least: "lower", abov
   high: "upper", upper_cutoff: "upper", at_most: "upper", below: "upper" };
 const WIDE = 100, TALL = 26;
 
-/** A number with the decimals of its step, and no more than it has. */
-function stepText(value, step) {
+/** A number with the decimals of its step, and no more than it has; a date or a time in its form. */
+function stepText(value, step, form = null) {
   if (value === null || value === undefined) return "";
+  if (form) return momentText(value, form);
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
   const rounded = Number(value.toFixed(Math.min(decimals, 12)));
   return Math.abs(rounded - value) <= 1e-9 * Math.abs(value) ? valueText(value, decimals) : shortText(value, 12);
@@ -34,7 +35,7 @@ class Track {
     this.numbers = [];
     this.ticks = [];
     this.step = 1;
-    this.shape = this.own = this.mark = null;
+    this.shape = this.own = this.mark = this.form = null;
     this.off = false;
     this.drawing = makeSvg("svg", { viewBox: `0 0 ${WIDE} ${TALL}`, preserveAspectRatio: "none", "aria-hidden": "true" });
     this.root = make("div", { class: "track" }, this.drawing);
@@ -44,10 +45,11 @@ class Track {
 
   /**
    * Bring it up to date: the numbers, the step, the distribution now and in the workbook, a value to be marked, values
-   * with a tick each.
+   * with a tick each, and the form of dates and times.
    */
-  update({ numbers, step, shape, own, mark, off, ticks = [] }) {
-    Object.assign(this, { numbers, step, shape, own, mark, off, ticks });
+  update({ numbers, step, shape, own, mark, off, ticks = [], form = null }) {
+    Object.assign(this, { numbers, step, shape, own, mark, off, ticks, form });
+    this.ends.classList.toggle("dated", Boolean(form));
     if (this.held === null) this.fit();
     for (const number of numbers) this.place(this.knob(number), number);
     for (const [key, knob] of this.knobs) {
@@ -73,7 +75,7 @@ class Track {
     if (!good) this.axis = [low - 0.3 * span, high + 0.3 * span];
     const [first, last] = this.axis;
     const decimals = Math.min(12, decimalsOf(10 ** Math.floor(Math.log10(last - first) - 1))); // the ends differ as they are shown
-    const shown = this.axis.map((end) => styled(`${Number(end.toFixed(decimals))}`, false));
+    const shown = this.axis.map((end) => this.form ? momentText(end, this.form) : styled(`${Number(end.toFixed(decimals))}`, false));
     [...this.ends.children].forEach((place, i) => { place.textContent = shown[i]; });
   }
 
@@ -108,7 +110,7 @@ class Track {
     knob.setAttribute("aria-valuemin", String(Math.min(least, value)));
     knob.setAttribute("aria-valuemax", String(Math.max(most, value)));
     knob.setAttribute("aria-valuenow", String(value));
-    knob.setAttribute("aria-valuetext", `${stepText(value, this.step)}${this.units ? ` ${this.units}` : ""}`);
+    knob.setAttribute("aria-valuetext", `${stepText(value, this.step, this.form)}${this.units ? ` ${this.units}` : ""}`);
     knob.setAttribute("aria-disabled", String(Boolean(this.off)));
   }
 
@@ -213,17 +215,23 @@ class Track {
 const BETWEEN = /^(.+?)\s*(?:\b(?:to|bis)\b|\.\.\.?|…|–)\s*(.+)$/i;
 const AROUND = /^(.+?)\s*(?:±|\+\/?-)\s*(.+)$/;
 
-/** Two ends in one box, 0.6 to 0.8 or 0.7 ± 10 %: `low`, `high` and with ± `middle`; null where it is no range. */
-function typedRange(text) {
+/**
+ * Two ends in one box, 0.6 to 0.8 or 0.7 ± 10 %: `low`, `high` and with ± `middle`; null where it is no range. `read`
+ * gives the number that a text is; null for none.
+ */
+function typedRange(text, read = (part) => typed(part, null)) {
   const plain = text.trim();
   const [, first, second] = (plain.startsWith("=") ? null : plain.match(AROUND) ?? plain.match(BETWEEN)) ?? [];
-  if (first === undefined || typed(first, null) === null || typed(second, null) === null) return null;
-  const [a, b] = [typed(first, null), typed(second, null)];
+  if (first === undefined || read(first) === null || read(second) === null) return null;
+  const [a, b] = [read(first), read(second)];
   if (!AROUND.test(plain)) return { low: Math.min(a, b), high: Math.max(a, b), middle: null };
   const share = second.endsWith("%");
   const off = Math.abs(share ? (a * b) / 100 : b);
   return { low: Number((a - off).toPrecision(12)), high: Number((a + off).toPrecision(12)), middle: a, share };
 }
+
+const WHICH_MOMENT = { day: "Type a date, as 2026-03-01.", time: "Type a date and a time, as 2026-03-01 14:30.",
+  span: "Type hours and minutes, as 49:15." };
 
 const NONE = "none"; // what is said for a limit that is taken away
 
@@ -238,7 +246,7 @@ class NumberBox {
     this.percent = percent;
     this.goes = goes;
     this.step = 1;
-    this.value = null;
+    this.value = this.form = null;
     this.why = make("span", { class: "why", role: "alert", id: Numbered.id("why") });
     this.input = make("input", { type: "text", inputmode: "text", autocomplete: "off", spellcheck: "false",
       "aria-describedby": this.why.id });
@@ -252,16 +260,17 @@ class NumberBox {
     this.input.addEventListener("keydown", (event) => this.press(event));
   }
 
-  update(value, step, { off = false, why = "" } = {}) {
-    Object.assign(this, { value, step });
+  update(value, step, { off = false, why = "", form = this.form } = {}) {
+    Object.assign(this, { value, step, form });
     if (document.activeElement !== this.input || this.input.value === this.shown) {
-      this.shown = this.input.dataset.shown = why || stepText(value, step);
+      this.shown = this.input.dataset.shown = why || stepText(value, step, form);
       this.input.value = this.shown;
       this.refuse("");
     }
     this.input.disabled = off;
     this.input.title = why ? `Computed: ${why}; type a number to replace it` : this.hint;
     this.input.classList.toggle("computed", Boolean(why));
+    this.input.classList.toggle("dated", Boolean(form));
   }
 
   /** Say why what was typed is not taken; nothing where it is. */
@@ -279,17 +288,19 @@ class NumberBox {
       this.set(NONE, false);
       return;
     }
-    const range = typedRange(text);
+    const { form } = this;
+    const read = (part) => (form ? formTyped(part, null, form) : typed(part, null));
+    const range = typedRange(text, read);
     if (range) {
       this.refuse(this.setRange ? this.setRange(range) : "Type one number here.");
       return;
     }
-    const value = typed(text, null);
+    const value = read(text);
     if (value === null || !Number.isFinite(value)) {
-      this.refuse(whyNoNumber(text));
+      this.refuse(form ? WHICH_MOMENT[form.moment] : whyNoNumber(text));
       return;
     }
-    const share = text.trim().endsWith("%") && !text.trim().startsWith("=") && !this.percent;
+    const share = !form && text.trim().endsWith("%") && !text.trim().startsWith("=") && !this.percent;
     this.take(share ? Number((value / 100).toPrecision(15)) : value);
   }
 
@@ -303,7 +314,7 @@ class NumberBox {
   take(value) {
     this.value = value;
     this.refuse("");
-    this.shown = this.input.dataset.shown = this.input.value = stepText(value, this.step);
+    this.shown = this.input.dataset.shown = this.input.value = stepText(value, this.step, this.form);
     this.refuse(this.set(value, false) ?? "");
   }
 }

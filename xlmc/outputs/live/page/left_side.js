@@ -125,7 +125,7 @@ class AssumptionCard {
     const off = row.frozen || row.status === "not needed";
     this.track.update({
       numbers: row.numbers.filter((each) => each.drags), step: row.step, shape: off ? null : shape, own,
-      mark: row.base, off: row.frozen,
+      mark: row.base, off: row.frozen, form: row.form,
     });
     this.kinds.update(row);
     for (const [key, box] of this.boxes) {
@@ -141,13 +141,13 @@ class AssumptionCard {
         this.held.before(box.root);
       }
       const why = number.cell; // 12 (Inputs!J8: =eta)
-      this.boxes.get(number.key).update(number.value, this.stepOf(number), { off: row.frozen, why });
+      this.boxes.get(number.key).update(number.value, this.stepOf(number), { off: row.frozen, why, form: number.form });
     }
     this.bands.hidden = row.band === null;
     if (row.band?.some((end, i) => end !== 100 * i)) this.bands.open = true;
     Object.values(this.band).forEach((box, i) => box.update(row.band?.[i] ?? null, 1, { off: row.frozen }));
     this.frozen.checked = row.frozen;
-    this.base.update(row.base, row.step, { off: !row.frozen });
+    this.base.update(row.base, row.step, { off: !row.frozen, form: row.form });
     this.root.classList.toggle("changed", row.changed);
     this.back.hidden = !row.changed;
     this.status.textContent = row.status === "not needed" ? " not needed by any answer" : "";
@@ -221,7 +221,7 @@ class FilterCard {
     this.row = row;
     const numbers = row.limits.filter((each) => each.drags && each.value !== null);
     this.track.box.hidden = !numbers.length;
-    this.track.update({ numbers, step: row.step, shape: row.shape ?? null, own: null, mark: null, off: !row.used });
+    this.track.update({ numbers, step: row.step, shape: row.shape ?? null, own: null, mark: null, off: !row.used, form: row.form });
     this.switch.hidden = !row.switches;
     this.used.checked = row.used;
     this.root.classList.toggle("off", !row.used);
@@ -235,7 +235,7 @@ class FilterCard {
         this.numbers.append(box.root);
       }
       const why = limit.cell;
-      this.boxes.get(limit.key).update(limit.value, this.stepOf(limit), { off: !row.used, why });
+      this.boxes.get(limit.key).update(limit.value, this.stepOf(limit), { off: !row.used, why, form: limit.form });
     }
     this.root.classList.toggle("changed", row.changed);
     this.back.hidden = !row.changed;
@@ -319,7 +319,7 @@ class TypedCard {
         this.boxes.set(number.key, box);
         this.numbers.append(box.root);
       }
-      this.boxes.get(number.key).update(number.value, row.step ?? number.step, { off: Boolean(number.cell), why: number.cell });
+      this.boxes.get(number.key).update(number.value, row.step ?? number.step, { off: Boolean(number.cell), why: number.cell, form: number.form });
     }
     this.root.classList.toggle("changed", row.changed);
     this.back.hidden = !row.changed;
@@ -357,7 +357,8 @@ class DecisionCard extends TypedCard {
     }
     const ticks = row.tried.length ? row.tried : row.ends;
     const [{ value, own }] = row.numbers;
-    this.track.update({ numbers: row.numbers, step: row.step, shape: null, own: null, mark: value === own ? null : own, off: false, ticks });
+    this.track.update({ numbers: row.numbers, step: row.step, shape: null, own: null, mark: value === own ? null : own, off: false, ticks,
+      form: row.form });
   }
 }
 

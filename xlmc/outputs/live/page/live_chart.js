@@ -81,6 +81,7 @@ class LivePanel extends Panel {
   constructor(element, forecast, z) {
     super(element, forecast, z);
     this.article = element;
+    for (const box of [this.box("low"), this.box("high"), this.find(".above")]) box.classList.toggle("dated", Boolean(forecast.form.moment));
     this.find(".bar-count").value = String(LivePanel.bars.of(forecast.name) ?? "");
     this.divide();
     if (this.bins !== this.bars) this.draw();

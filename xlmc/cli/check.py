@@ -121,7 +121,8 @@ def _error_lines(model: CompiledModel, errors: BaseErrors) -> Iterator[str]:
         from xlmc.analysis.results.record.needed_cells import content_text
         from xlmc.excel.address import host_of
 
-        yield f"{cell} {code.text}{handled}: {content_text(model.workbook, host_of(cell))}"
+        content = content_text(model.workbook, host_of(cell), tabulated=model.tabulated)
+        yield f"{cell} {code.text}{handled}: {content}"
     if len(errors.roots) > _MOST_CELLS:
         yield f"… and {count_text(len(errors.roots) - _MOST_CELLS)} more cells with an error of their own"
     if errors.others:

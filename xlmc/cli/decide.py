@@ -56,5 +56,8 @@ def _doubts(found: Decided) -> list[str]:
     doubts = [f"{each.answers.name}: {warning}" for each in found.combinations for warning in each.answers.warnings]
     return [
         *doubts,
-        *(f"{values_text(found.decisions, each)}: not possible: {why}" for each, why in found.impossible.items()),
+        *(
+            f"{values_text(found.decisions, each)}: not possible: {why.rstrip('.')}"
+            for each, why in found.impossible.items()
+        ),
     ]

@@ -138,7 +138,9 @@ def _of_scenarios(run: RunResult, answers: Sequence[ScenarioAnswers]) -> list[st
     from xlmc.analysis.studies.scenario_answers import impossible_scenarios
 
     own = answers[0].warnings if answers else []
-    impossible = [f"scenario {name!r} is not possible: {why}" for name, why in impossible_scenarios(run).items()]
+    impossible = [
+        f"scenario {name!r} is not possible: {why.rstrip('.')}" for name, why in impossible_scenarios(run).items()
+    ]
     unusable = ((each.name, said) for each in answers[1:] for said in each.warnings if said not in own)
     return [*impossible, *(f"scenario {name!r}: {said}" for name, said in unusable)]
 

@@ -9,7 +9,12 @@ from openpyxl.worksheet.formula import DataTableFormula
 from openpyxl.worksheet.table import Table
 
 import xlmc
+from xlmc.analysis.results.record.errors_met import lost_sentences
+from xlmc.analysis.results.record.needed_cells import needed_contents
 from xlmc.errors import FormulaError
+from xlmc.excel.address import Cell
+from xlmc.montecarlo.model.loading import load, model_with_values
+from xlmc.montecarlo.simulation.simulate import simulate
 
 INPUTS = [
     ["Name", "Value", "Distribution", "Low", "High"],
@@ -138,3 +143,90 @@ def test_a_table_that_cannot_be_computed_is_refused(tmp_path, more):
     table = {**COLUMN, "B3": DataTableFormula(ref="B3:C5", r1="J1", dt2D=False, dtr=False), **more}
     with pytest.raises(FormulaError, match="What-if data tables that depend on the run are not computed"):
         xlmc.load(written(tmp_path / "a.xlsx", table, {"y": "=Table!B4"}))
+
+
+CONSTANT = {
+    "A3": 1,
+    "A4": 2.5,
+    "B2": "=Table!J1*Table!J3",
+    "J1": 3,
+    "J3": 2,
+    "B3": DataTableFormula(ref="B3:B4", r1="J1", dt2D=False, dtr=False),
+    "B4": 5,  # 2.5 * 2, as Excel saves it
+    "C3": None,
+    "D3": "=Table!B4+Inputs!B2",
+}
+"""A table that no assumption reaches, and an answer beside it."""
+
+
+@pytest.fixture
+def constant(tmp_path):
+    """A book whose answer is x plus 2.5 times J3, by a table that holds what J3 = 2 gives."""
+    return written(tmp_path / "constant.xlsx", CONSTANT, {"y": "=Table!D3"})
+
+
+def test_a_table_follows_a_decision_that_no_assumption_reaches(constant):
+    """A run with another J3 used what Excel had saved for the old one."""
+    model = load(constant)
+    for value in (2.0, 4.0):
+        found = model_with_values(model, {Cell("Table", 3, 10): value})
+        run = simulate(found, trials=200, seed=1)
+        assert np.allclose(run.forecasts["y"], run.inputs["x"] + 2.5 * value, rtol=1e-14), value
+
+
+def test_what_another_program_left_in_a_table_is_not_used(constant, tmp_path):
+    """openpyxl writes another input, and keeps what Excel had calculated from the one before."""
+    book = openpyxl.load_workbook(constant)
+    book["Table"]["J3"] = 4
+    book["Table"]["B3"].value.ref = "B3:B4"
+    book.save(tmp_path / "edited.xlsx")
+    model = xlmc.load(tmp_path / "edited.xlsx")
+    run = model.simulate(200, keep_inputs=None)
+    assert np.allclose(run.forecasts["y"], run.inputs["x"] + 10.0, rtol=1e-14)
+    assert any("not those that its formulas give" in str(notice) for notice in model.notices)
+
+
+def test_goal_seek_goes_through_a_table(constant):
+    found = xlmc.seek(constant, "Table!D3", 20.5, "Table!J3")
+    assert found.values == pytest.approx([8.0], rel=1e-12)
+
+
+def test_a_cell_of_a_table_is_no_constant(tmp_path):
+    table = {**COLUMN, "B3": DataTableFormula(ref="B3:C5", r1="J1", dt2D=False, dtr=False)}
+    model = xlmc.load(written(tmp_path / "a.xlsx", table, {"y": "=0"}))
+    book = openpyxl.load_workbook(tmp_path / "a.xlsx")
+    book["Answers"]["A1"], book["Answers"]["B1"] = "Name", "Cell"
+    book["Answers"]["B2"] = "=Table!C4"
+    book["Answers"].tables["xlmc_forecasts"].tableColumns[1].name = "Cell"
+    book.save(tmp_path / "b.xlsx")
+    model = xlmc.load(tmp_path / "b.xlsx")
+    assert not any("is a constant" in str(notice) for notice in model.notices)
+    assert np.ptp(model.simulate(100).forecasts["y"]) > 0
+
+
+def test_the_record_holds_the_table_and_what_its_formulas_read(tmp_path):
+    table = {**COLUMN, "B3": DataTableFormula(ref="B3:C5", r1="J1", dt2D=False, dtr=False)}
+    model = xlmc.load(written(tmp_path / "a.xlsx", table, {"y": "=Table!C5"}))
+    cells = {str(cell): text for cell, text in needed_contents(load(tmp_path / "a.xlsx")).items()}
+    assert cells["Table!C5"] == "{=TABLE(,J1)} in B3:C5"
+    assert cells["Table!C2"] == "=Model!B4+1"  # the formula that it computes, and what that is computed from
+    assert cells["Model!B1"] == "=Inputs!B2^Table!J1"
+    assert "Table!J1" not in cells  # whose value is put in
+
+    run = model.simulate(300, seed=1)
+    run.save(tmp_path / "a-results.xlsx")
+    book = openpyxl.load_workbook(tmp_path / "a-results.xlsx")
+    book["Table"]["C5"] = 77  # what Excel calculates there is not used
+    book.save(tmp_path / "same.xlsx")
+    assert xlmc.replay(tmp_path / "same.xlsx").identical
+    book["Model"]["B3"] = "=Table!J1*3"
+    book.save(tmp_path / "other.xlsx")
+    changes = xlmc.replay(tmp_path / "other.xlsx").changes
+    assert [(each.where, each.old, each.new) for each in changes] == [("Model!B3", "=Table!J1*2", "=Table!J1*3")]
+
+
+def test_an_error_comes_from_the_table(tmp_path):
+    table = {**COLUMN, "B2": "=SQRT(0.5-Inputs!B2)"}
+    table |= {"B3": DataTableFormula(ref="B3:C5", r1="J1", dt2D=False, dtr=False)}
+    run = xlmc.load(written(tmp_path / "a.xlsx", table, {"y": "=Table!B3*2"})).simulate(500)
+    assert any("from Table!B3 #NUM!: {=TABLE(,J1)} in B3:C5" in line for line in lost_sentences(run._run))

@@ -5,8 +5,11 @@ import pytest
 
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import DefinitionError, FormulaError, SimulationError
+from xlmc.excel.address import Cell, parse_address
+from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.montecarlo.definitions.definitions import Settings
 from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.model.model import CompiledModel
 
 CELLS = {"A1": 1.0, "A2": 2.0, "A3": 3.0, "B1": "=A1+A2", "B2": "=SQRT(A1)", "B3": '=IF(A1>0,"x",A1)', "C1": "=B1>0"}
 GIVEN = {"Mass": {"cell": "A1", "low": 0, "high": 1}, "speed": {"cell": "A2", "low": 0, "high": 1}}
@@ -147,6 +150,21 @@ def test_the_saved_value_of_a_known_part_is_noticed(book):
     model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"x": "B2"})
     assert model.function({"a": 1.0})["x"].tolist() == [4.0]
     assert "Excel's saved value is used" in str(model.notices[0])
+
+
+@pytest.mark.parametrize("formula", ["=MYFUNC(A2)", "=MYFUNC(C1)"])
+def test_a_saved_value_of_other_inputs_is_not_used(book, formula):
+    cells = {"A1": 1.0, "A2": 2.0, "A3": 5.0, "C1": "=A2*2", "B1": (formula, 3.0), "B2": "=A1+B1+A3"}
+    model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"x": "B2"})
+
+    def typed(**values):
+        cells = {parse_address(f"S!{address}"): value for address, value in values.items()}
+        return CompiledModel(with_values(model.workbook, cells), model.definitions, model.path)
+
+    assert typed(A2=2.0, A3=7.0).function({"a": 1.0})["x"].tolist() == [11.0]  # A2 as it was
+    with pytest.raises(FormulaError, match="what Excel saved in it belongs to another content of S!A2") as caught:
+        typed(A2=9.0)
+    assert caught.value.where == Cell("S", 1, 2)
 
 
 def test_a_book_with_mistakes_is_not_loaded(tmp_path, monkeypatch):

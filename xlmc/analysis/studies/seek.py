@@ -29,6 +29,7 @@ from xlmc.montecarlo.definitions.definitions_reader import read_definitions
 from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.distributions.spelling import did_you_mean, name_key
 from xlmc.montecarlo.model.cell_forms import forms_of
+from xlmc.montecarlo.model.data_tables import with_data_tables
 from xlmc.montecarlo.model.labels import calculate_labels
 from xlmc.montecarlo.model.solving import unknown_of, with_solved_cells
 from xlmc.montecarlo.number_text import number_text
@@ -128,6 +129,7 @@ def seek(
         hint = "Name the input that is to be found"
         raise DefinitionError(f"{unknown} holds a formula, and only a cell without one can be varied", hint=hint)
     definitions = _without(with_solved_cells(workbook, _without(definitions, unknown)), unknown)
+    definitions = with_data_tables(workbook, definitions, (unknown,))
     compiled = unknown_of(workbook, definitions, wanted, to, unknown, None, workbook.name)
     given = _bases(definitions, compiled.inputs)
     content = workbook.content(unknown).value

@@ -33,7 +33,8 @@ from xlmc.errors import ErrorCode, FormulaError, Notice
 from xlmc.excel.address import Area, Cell, InFormula, host_of
 from xlmc.excel.formula import Filled, Graph, Resolver, build_graph, ir
 from xlmc.excel.formula.callables import gives_function
-from xlmc.excel.formula.graph import Spills
+from xlmc.excel.formula.graph import Spills, reached
+from xlmc.excel.formula.precedents import mentioned_cells
 from xlmc.excel.functions import Function, Kind
 from xlmc.excel.functions.budget import CallCount, ask_for_reading
 from xlmc.excel.functions.facts import Facts
@@ -380,13 +381,27 @@ class Lowering(TreeLowering):
 
     def _take_saved(self, cell: Cell, error: FormulaError) -> int:
         """Excel's own value stands in for what we cannot compute, as long as no assumption reaches it."""
-        text = self.graph.text(cell)
-        complete = FormulaError(error.message, where=cell, hint=error.hint, text=text, span=error.span)
-        saved = self.graph.workbook.content(cell).value
-        if self._strict and (cell in self.graph.varying or saved is None):
+        text, saved = self.graph.text(cell), self.graph.workbook.content(cell).value
+        varies = cell in self.graph.varying or saved is None
+        typed = None if varies or not self._strict else self._needs_typed(cell)
+        older = "" if typed is None else f"; what Excel saved in it belongs to another content of {typed}"
+        complete = FormulaError(error.message + older, where=cell, hint=error.hint, text=text, span=error.span)
+        if self._strict and (varies or older):
             raise complete from None
         self.notices.append(Notice(f"{error.message}; Excel's saved value is used (no assumption reaches it)", cell))
         return self._use_saved(cell, complete)
+
+    def _needs_typed(self, cell: Cell) -> Cell | None:
+        """Return a cell that a formula depends on and that was typed into since Excel saved its value; else None."""
+        book, graph = self.graph.workbook, self.graph
+        if not book.typed:
+            return None
+        among = {*book.typed, *book.formula_cells()}
+
+        def following(at: Cell) -> Iterable[Cell]:
+            return (*graph.needs.get(at, ()), *mentioned_cells(book, at, among))  # of needs, the constants are left out
+
+        return next((at for at in reached([cell], following) if at in book.typed), None)
 
     def _use_saved(self, cell: Cell, fault: FormulaError) -> int:
         self.saved[cell] = self.graph.workbook.content(cell).value

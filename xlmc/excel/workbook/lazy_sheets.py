@@ -194,7 +194,9 @@ def naming_file(file: str) -> Iterator[None]:
 
 def with_values(workbook: Workbook, values: Mapping[Cell, CellValue]) -> Workbook:
     """Return the workbook with these values typed into its cells; see `with_contents`."""
-    return with_contents(workbook, {cell: CellContent(value) for cell, value in values.items()})
+    contents = {cell: CellContent(value) for cell, value in values.items()}
+    other = {cell for cell, content in contents.items() if content != workbook.content(cell)}
+    return replace(with_contents(workbook, contents), typed=workbook.typed | other)
 
 
 def with_contents(workbook: Workbook, contents: Mapping[Cell, CellContent]) -> Workbook:

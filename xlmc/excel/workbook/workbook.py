@@ -279,6 +279,8 @@ class Workbook:
         sha256: of the file.
         data: the file itself, byte for byte; otherwise empty.
         functions: what its formulas call beside Excel's functions; None for nothing.
+        typed: the cells that hold something else than the file: what is saved for formulas that need them is of another
+            state of the workbook.
     """
 
     name: str
@@ -301,6 +303,7 @@ class Workbook:
     sha256: str = ""
     data: bytes = field(default=b"", repr=False)
     functions: OwnFunctions | None = None
+    typed: frozenset[Cell] = frozenset()
 
     def __getitem__(self, place: str) -> CellValue:
         """Return the value that is saved in a cell: a number, True or False, a text, an error, None if it is blank.

@@ -26,8 +26,9 @@ class Computed:
         self._spills = Spills(workbook)
 
     def by_formula(self, cell: Cell) -> bool:
-        """Whether a formula does: its own, or an array formula of another cell that fills it."""
-        return self._workbook.content(cell).formula is not None or self._spills.anchor(cell) is not None
+        """Whether a formula does: its own, an array formula of another cell that fills it, or a what-if data table."""
+        own = self._workbook.content(cell).formula is not None or self._spills.anchor(cell) is not None
+        return own or any(cell in table.area for table in self._workbook.data_tables)
 
     def at_all(self, cell: Cell) -> bool:
         """Whether anything does; otherwise the cell is a constant."""

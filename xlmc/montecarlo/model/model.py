@@ -34,7 +34,7 @@ from xlmc.montecarlo.model.correlating import (
     repair_notices,
     tie_notices,
 )
-from xlmc.montecarlo.model.data_tables import with_data_tables
+from xlmc.montecarlo.model.data_tables import cells_read, computed_tables, with_data_tables
 from xlmc.montecarlo.model.draw_binding import base_point, draw_of, dynamic_parameters, parameter_target, with_numbers
 from xlmc.montecarlo.model.forecast_filters import (
     FilteringEvaluator,
@@ -244,7 +244,13 @@ class CompiledModel:
     @property
     def read(self) -> frozenset[Cell]:
         """Every cell that the forecasts, filters and checks read, blank cells of ranges among them."""
-        return self.lowering.read | (frozenset() if self._checks is None else self._checks.read)
+        found = self.lowering.read | (frozenset() if self._checks is None else self._checks.read)
+        return found | cells_read(self.definitions, found)
+
+    @property
+    def tabulated(self) -> frozenset[Cell]:
+        """The cells of what-if data tables that are computed in every trial."""
+        return frozenset(computed_tables(self.definitions))
 
     @property
     def trees(self) -> dict[Cell, ir.Expression]:

@@ -9,7 +9,7 @@ from decimal import ROUND_DOWN, ROUND_HALF_EVEN, ROUND_HALF_UP, Context, Decimal
 from typing import TYPE_CHECKING, Final, TypeGuard, TypeVar
 
 from xlmc.analysis.results.record import Record, Value
-from xlmc.analysis.results.record.needed_cells import SAVED, content_text, definition_cells
+from xlmc.analysis.results.record.needed_cells import SAVED, TABULATED, content_text, definition_cells
 from xlmc.excel.workbook.workbook import CellValue
 
 if TYPE_CHECKING:
@@ -156,8 +156,11 @@ class NumberChange:
 def contents_now(workbook: Workbook, recorded: Mapping[Cell, str]) -> dict[Cell, str]:
     """Return the recorded cells as they are now, needed or not, and those of the reserved tables."""
     saved = {cell for cell, text in recorded.items() if SAVED in text}
+    tabulated = {cell for cell, text in recorded.items() if text.startswith(TABULATED)}
     cells = [*recorded, *sorted(definition_cells(workbook) - recorded.keys())]
-    found = {cell: content_text(workbook, cell, saved) for cell in cells if workbook.sheet_of(cell) is not None}
+    found = {
+        cell: content_text(workbook, cell, saved, tabulated) for cell in cells if workbook.sheet_of(cell) is not None
+    }
     return {cell: text for cell, text in found.items() if text}
 
 

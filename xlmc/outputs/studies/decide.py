@@ -79,9 +79,11 @@ def _sentences(found: Decided) -> Iterator[str]:
             yield _losing_text(losing, forecast.name)
     if found.ended:
         yield ended_early("table", found.ended, "Combinations that are not in it were not run.")
-    if same:
+    if same and not (found.impossible or found.ended):
         are = "are" if len(found.decisions) > 1 else "is"
         yield f"Whatever {names} {are}, these stay as they are: {'; '.join(same)}."
+    elif same and len(found.combinations) > 1:
+        yield f"In the combinations that were run these stay as they are: {'; '.join(same)}."
 
 
 def _losing_text(losing: Sequence[Combination], forecast: str) -> str:

@@ -102,7 +102,9 @@ def _lost(simulation: RunResult, met: ErrorMet) -> str:
         return f"{sentence}: {why}" if why else sentence
     cell, code = met.root
     why = fault_text(simulation.model.definitions.solves, cell, code)
-    return f"{sentence}, from {cell} {code.text}: {why or content_text(simulation.model.workbook, host_of(cell))}"
+    model = simulation.model
+    content = content_text(model.workbook, host_of(cell), tabulated=model.tabulated)
+    return f"{sentence}, from {cell} {code.text}: {why or content}"
 
 
 def _code(error: str) -> ErrorCode | None:

@@ -27,12 +27,13 @@ from xlmc.montecarlo.definitions.tables.reserved_tables import KINDS
 from xlmc.montecarlo.distributions.spelling import name_key
 
 if TYPE_CHECKING:
-    from xlmc.excel.workbook.workbook import DefinedName, Table, Workbook
+    from xlmc.excel.workbook.workbook import DataTable, DefinedName, Table, Workbook
     from xlmc.montecarlo.model.model import CompiledModel
 
 __all__ = [
     "MOST_ROWS",
     "SAVED",
+    "TABULATED",
     "cell_section",
     "content_text",
     "definition_cells",
@@ -43,6 +44,9 @@ __all__ = [
 
 SAVED: Final = "  (Excel saved "
 """What stands between the formula of a cell that xlmc cannot compute and the value that was used for it."""
+
+TABULATED: Final = "{=TABLE("
+"""What the content of a cell of a data table begins with that a run computes."""
 
 MOST_ROWS: Final = 1_000
 """Cells that are listed one a row."""
@@ -70,7 +74,7 @@ def needed_contents(model: CompiledModel) -> dict[Cell, str]:
     These are the cells that forecasts and filters read, those of assumptions and of their data, and the reserved
     tables. Blank cells are left out.
     """
-    workbook, saved = model.workbook, model.saved
+    workbook, saved, tabulated = model.workbook, model.saved, model.tabulated
     cells = {host_of(cell) for cell in model.read} | {host_of(a.cell) for a in model.assumptions}
     cells |= definition_cells(workbook)
     for assumption in model.assumptions:
@@ -81,7 +85,7 @@ def needed_contents(model: CompiledModel) -> dict[Cell, str]:
     known = (cell for cell in cells if cell.sheet in ranks)
     found = {}
     for cell in sorted(known, key=lambda cell: (ranks[cell.sheet], cell)):
-        if text := content_text(workbook, cell, saved):
+        if text := content_text(workbook, cell, saved, tabulated):
             found[cell] = text
     return found
 
@@ -92,19 +96,29 @@ def definition_cells(workbook: Workbook) -> set[Cell]:
     return {cell for area in areas for cell in _filled_cells(workbook, area)}
 
 
-def content_text(workbook: Workbook, cell: Cell, saved: Container[Cell] = ()) -> str:
+def content_text(workbook: Workbook, cell: Cell, saved: Container[Cell] = (), tabulated: Container[Cell] = ()) -> str:
     """Write what a cell holds as a formula would: `=A1*2`, `6661`, `"text"`, `TRUE`, `#N/A`; empty if it is blank.
 
     Args:
         workbook: that it stands in.
         cell: to look at.
         saved: the cells whose saved values a run uses although they hold formulas.
+        tabulated: the cells of what-if data tables that a run computes: `{=TABLE(,A2)} in D2:E5`.
     """
+    if cell in tabulated and (table := next((each for each in workbook.data_tables if cell in each.area), None)):
+        return f"{_table_formula(table)} in {table.area.a1}"
     content = workbook.content(cell)
     if content.formula is None:
         return value_text(content.value)
     written = _formula_text(content.formula, cell)
     return f"{written}{SAVED}{value_text(content.value)})" if cell in saved else written
+
+
+def _table_formula(table: DataTable) -> str:
+    """Write a what-if data table as Excel shows it, with the input cell for the row above first."""
+    first, second = [*(each.a1 for each in table.inputs), "#REF!", "#REF!"][:2]
+    inputs = (first, second) if table.two_inputs else (first, "") if table.by_row else ("", first)
+    return f"{TABULATED}{','.join(inputs)})}}"
 
 
 def value_text(value: CellValue) -> str:

@@ -344,3 +344,18 @@ def test_a_mistake_is_one_message_and_nothing_is_written(xlmc, book, tmp_path, a
 def test_a_value_in_csv_has_all_its_digits(value, written):
     found = _exact(value)
     assert (found, type(found)) == (written, type(written))
+
+
+def test_functions_that_draw_are_not_called_unknown(xlmc, tmp_path):
+    book = openpyxl.Workbook()
+    for at, formula in enumerate(
+        ["=RiskNormal(1,2)", "=CB.GetForeStatFN(A1,2)", "=_xll.RiskMean(A1)", "=NOSUCH(1)"], 1
+    ):
+        book.active[f"A{at}"] = formula
+    book.save("draws.xlsx")
+    outcome = xlmc("calculate", "draws.xlsx", "-o", "copy.xlsx")
+    drawn = (
+        "Sheet!A1, Sheet!A2, Sheet!A3: The formula draws at random or shows results of a simulation; they have no value"
+    )
+    assert drawn in " ".join(outcome.err.split())
+    assert "Sheet!A4: The function NOSUCH is not known to xlmc; it has no value" in outcome.err

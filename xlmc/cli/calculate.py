@@ -279,7 +279,7 @@ def _tell(answers: _Answers, book: Path, outputs: Sequence[Path]) -> None:
     for each in answers.found:
         for said, cells in (("has no value", each.unknown), ("keeps the saved value", each.kept)):
             for cell, why in cells.items():
-                listed = by_reason.setdefault((said, why), [])
+                listed = by_reason.setdefault((said, _reason(answers.book, cell, why)), [])
                 if cell not in listed:
                     listed.append(cell)
     for (said, why), listed in by_reason.items():
@@ -289,6 +289,18 @@ def _tell(answers: _Answers, book: Path, outputs: Sequence[Path]) -> None:
             said = said.replace("has", "have").replace("keeps", "keep")
         who = "it" if len(listed) == 1 else "they"
         say(f"note: {shown}{more}: {capitalised(why)}; {who} {said}.", err=True)
+
+
+def _reason(book: Workbook, cell: Cell, why: str) -> str:
+    """Return why a cell could not be computed, in other words where its formula calls Crystal Ball, @RISK or the like.
+
+    Such functions are known, but give values in a run alone.
+    """
+    from xlmc.montecarlo.definitions.in_cells.calls import holds_call
+
+    formula = book.content(cell).formula
+    called = formula is not None and "(" in formula.text and holds_call(formula.text)
+    return "the formula draws at random or shows results of a simulation" if called else why
 
 
 def _cells(count: int) -> str:

@@ -5,7 +5,7 @@ import pytest
 
 from xlmc.engine.engines import ENGINES
 from xlmc.errors import DefinitionError, FormulaError, SimulationError
-from xlmc.excel.address import Cell, parse_address
+from xlmc.excel.address import parse_address
 from xlmc.excel.workbook.lazy_sheets import with_values
 from xlmc.montecarlo.definitions.definitions import Settings
 from xlmc.montecarlo.model.loading import load
@@ -164,7 +164,7 @@ def test_a_saved_value_of_other_inputs_is_not_used(book, formula):
     assert typed(A2=2.0, A3=7.0).function({"a": 1.0})["x"].tolist() == [11.0]  # A2 as it was
     with pytest.raises(FormulaError, match="what Excel saved in it belongs to another content of S!A2") as caught:
         typed(A2=9.0)
-    assert caught.value.where == Cell("S", 1, 2)
+    assert caught.value.where == "S!B1"
 
 
 def test_a_book_with_mistakes_is_not_loaded(tmp_path, monkeypatch):

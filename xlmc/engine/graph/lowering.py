@@ -49,6 +49,8 @@ __all__ = ["WRITTEN_OUT", "Lowering", "lower_cells", "lower_until_complete"]
 
 _Arguments = tuple[ir.Expression, ...]
 
+_DRAW_EACH: Final = "draw in cells of their own, one for each value"
+
 _PASSING_ON = ir.Call | ir.Let | ir.Invoke
 """Trees that may give a whole range where one is wanted: choices, INDEX, LET, LAMBDA."""
 
@@ -257,6 +259,8 @@ class Lowering(TreeLowering):
             array = formula is not None and (formula.array is not None or formula.dynamic)
             node = self._lower_formula(tree, Scope(cell, array))
             self._arrays[cell] = node
+            if isinstance(cell, InFormula) and (size_of(self.dag, node) or (1, 1)) != (1, 1):
+                raise FormulaError("several values stand where a draw takes one", hint=_DRAW_EACH)
             node = self._show(self.first_cell(node))
             self._report_unknown(cell, self.lookup_constant(node))
         except NotYetNeeded as needed:

@@ -249,6 +249,7 @@ RULES: Final = (
     Rule("0.12.0", "draws in cells are called by the label beside them", _DRAWN),
     Rule("0.12.0", "percentages and money of assumptions are written as their cells show them", _ANY),
     Rule("0.12.0", "TRUE and FALSE that no assumption reaches are yes and no, exactly", _ANY),
+    Rule("0.12.0", "inverse functions of RAND() take every value of a range in array formulas", _calls("RAND")),
     Rule("0.12.0", "data tables that hold other values than their formulas give are computed", _ANY),
     Rule("0.12.0", "adjustment weights of matrices of rank correlations are honoured", _calls("RiskCorrmat")),
     Rule("0.12.0", "an answer made of tests, 1 and 0 is a yes/no answer where it never varies, too", _COMPARED),

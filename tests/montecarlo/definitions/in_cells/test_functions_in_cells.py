@@ -308,6 +308,47 @@ def test_an_array_of_draws_spills(workbook):
     assert abs(found.standard_deviation.value - 3) < 5 * found.standard_deviation.error
 
 
+@pytest.fixture
+def array_formula(workbook):
+    """A model whose answer is an array formula, as Excel saves what is typed today, over 100, 200, 300 in B1 to B3."""
+
+    def make(text):
+        formula = Formula(text, 1, 1, Area("S", 1, 1, 1, 1), dynamic=True)
+        cells = {"A1": CellContent(1.0, formula), "B1": 100.0, "B2": 200.0, "B3": 300.0, "C1": "=RiskOutput()+A1"}
+        held = workbook(cells)
+        return CompiledModel(held, read_definitions(held, ENGINES), Path("book.xlsx"))
+
+    return make
+
+
+@pytest.mark.parametrize(
+    ("text", "mean", "sd"),
+    [
+        ("SUM(NORM.INV(RAND(),B1:B3,1))", 600, 3),  # one uniform number for all three, as in Excel
+        ("SUM(NORM.INV(RAND(),B1:B3*2,{1;2;3}))", 1200, 6),
+        ("SUM(NORM.INV(RAND(),IF(B1:B3>150,B1:B3,0),2))", 500, 6),
+        ("SUM(NORM.INV(RAND(),RANDARRAY(2,1,5,5),1))", 10, 2),
+        ("SUM(GAMMA.INV(RAND(),1,{2,3}))", 5, 5),
+        ("NORM.INV(RAND(),AVERAGE(B1:B3),1)", 200, 1),
+        ("NORM.INV(RAND(),INDEX(B1:B3,2),1)", 200, 1),
+    ],
+)
+def test_an_inverse_of_many_parameters_is_of_one_uniform_number(array_formula, text, mean, sd):
+    found = simulated(array_formula(text), trials=TRIALS, seed=999)["S!C1"]
+    assert abs(found.mean.value - mean) < 5 * sd / math.sqrt(TRIALS)
+    assert abs(found.standard_deviation.value - sd) < 5 * found.standard_deviation.error
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["SUM(RiskNormal(B1:B3,1))", "SUM(CB.Normal({1,2},1))", "SUM(RANDBETWEEN(1,B1:B3))", "SUM(RANDARRAY(2,1,B1:B2,9))"],
+)
+def test_a_draw_of_many_parameters_is_refused(array_formula, text):
+    """It was drawn from the first of them."""
+    with pytest.raises(XlmcError, match="Several values stand where a draw takes one"):
+        array_formula(text)
+
+
 def test_a_locked_draw_is_held(model):
     made = model({"A1": "=RiskNormal(5,1,RiskLock(),RiskShift(1))+RAND()", "A2": "=A1+RiskOutput()"})
     assert [a.name for a in made.live] == ["S!A1#2"]

@@ -12,13 +12,15 @@ from dataclasses import replace
 from typing import Final
 
 from xlmc.errors import FormulaError
+from xlmc.excel.address import Area
 from xlmc.excel.formula import ir
+from xlmc.excel.formula.substitute import substitute
 from xlmc.montecarlo.definitions.in_cells.call_arguments import is_left_out, number_of, quotient, whole_part
 from xlmc.montecarlo.definitions.in_cells.call_draws import Arguments, Drawn, Properties, Signature
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.number_text import count_text
 
-__all__ = ["INVERSES", "random_draw"]
+__all__ = ["INVERSES", "may_be_many", "random_draw"]
 
 _RAND: Final = ir.Call("RAND", ())
 
@@ -66,6 +68,9 @@ INVERSES: Final = {
 _MOST: Final = 10_000
 """Draws of one `RANDARRAY`."""
 
+_MAKING_ARRAYS: Final = frozenset({"RANDARRAY", "SEQUENCE", "MUNIT", "MAKEARRAY"})
+"""Functions that give arrays of numbers alone."""
+
 
 def random_draw(tree: ir.Expression) -> Drawn | None:
     """Return what a part of a formula draws with Excel's own functions; None if it is no draw.
@@ -88,6 +93,40 @@ def random_draw(tree: ir.Expression) -> Drawn | None:
             return _inverse(name, arguments)
         case _:
             return None
+
+
+def may_be_many(tree: ir.Expression, in_array: bool) -> bool:
+    """Report whether an expression may give several values where one is meant.
+
+    Args:
+        tree: resolved.
+        in_array: the formula is an array formula, in which a range gives all its values.
+    """
+    match tree:
+        case ir.Array(rows):
+            return len(rows) * len(rows[0]) > 1
+        case Area():
+            return in_array and tree.rows * tree.columns > 1
+        case ir.Unary(_, operand):
+            return may_be_many(operand, in_array)
+        case ir.Binary(_, left, right):
+            return may_be_many(left, in_array) or may_be_many(right, in_array)
+        case ir.Call() | ir.Let() | ir.Invoke():
+            return in_array and any(map(_gives_many, _parts(tree)))
+        case _:
+            return False
+
+
+def _gives_many(part: ir.Expression) -> bool:
+    if isinstance(part, ir.Call):
+        return part.name in _MAKING_ARRAYS
+    return isinstance(part, ir.Array | Area) and may_be_many(part, in_array=True)
+
+
+def _parts(tree: ir.Expression) -> list[ir.Expression]:
+    found: list[ir.Expression] = []
+    substitute(tree, found.append)
+    return found
 
 
 def _inverse(name: str, arguments: tuple[ir.Expression, ...]) -> Drawn | None:

@@ -22,7 +22,7 @@ from xlmc.montecarlo.definitions.in_cells.compound_calls import COMPOUND, compou
 from xlmc.montecarlo.definitions.in_cells.constant_text import constant_text
 from xlmc.montecarlo.definitions.in_cells.crystal_ball_functions import crystal_ball_draw
 from xlmc.montecarlo.definitions.in_cells.other_programs import of_another_program, shows_its_result
-from xlmc.montecarlo.definitions.in_cells.random_functions import random_draw
+from xlmc.montecarlo.definitions.in_cells.random_functions import INVERSES, may_be_many, random_draw
 from xlmc.montecarlo.definitions.in_cells.result_functions import (
     NOT_COMPUTED,
     ResultCall,
@@ -235,6 +235,8 @@ class CellReading:
         if isinstance(part, ir.Lambda):
             _refuse_calls_within(part)
         drawn = random_draw(part)
+        if drawn is not None and drawn.function in INVERSES and self._is_of_many(drawn):
+            drawn = None  # one uniform number for all of its values: the formula goes on from that
         if drawn is not None:
             number, parameters = self._next(), self._rewrite_each(drawn.parameters)
             return self._take_draw(replace(drawn, parameters=parameters, text=formula_text(part)), number)
@@ -246,6 +248,12 @@ class CellReading:
             self._take_output(part)
             return ir.Number(0.0)
         return self._program_call(part)
+
+    def _is_of_many(self, drawn: Drawn) -> bool:
+        """Report whether a parameter of a draw may be an array: Excel then computes the function for each value."""
+        formula = self._workbook.content(self.host).formula
+        in_array = formula is not None and (formula.dynamic or formula.array is not None)
+        return any(may_be_many(tree, in_array) for tree in drawn.parameters.values())
 
     def _program_call(self, call: ir.Call) -> ir.Expression:
         """Return what stands instead of a call of Crystal Ball or @RISK."""

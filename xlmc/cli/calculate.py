@@ -296,7 +296,7 @@ def _reason(book: Workbook, cell: Cell, why: str) -> str:
 
     Such functions are known, but give values in a run alone.
     """
-    from xlmc.montecarlo.definitions.in_cells.calls import holds_call
+    from xlmc.montecarlo.definitions.in_cells.suspects import holds_call
 
     formula = book.content(cell).formula
     called = formula is not None and "(" in formula.text and holds_call(formula.text)

@@ -121,3 +121,29 @@ def test_solved_cells_and_decisions_are_shown(xlmc, tmp_path):
     words = " ".join(xlmc("check", "book.xlsx").out.split())
     assert "the x Inputs!B5 only 0 100 Model!B2 30" in words
     assert "Size Inputs!B6 m 5; 7.5" in words
+
+
+def test_only_forecasts_that_are_numbers_have_a_central_range(xlmc, tmp_path):
+    rows = {
+        "Inputs": [["Name", "Value", "Low", "High"], ["a", 0.5, 0.12345678901234, 0.9]],
+        "Model": [["A"], ["=Inputs!B2*2"], ["=Inputs!B2>0.5"], ['=IF(Inputs!B2>0.5,"yes","no")'], ["=Inputs!B2+1"]],
+        "Wanted": [
+            ["Name", "Cell", "Kind"],
+            ["number", "=Model!A2", ""],
+            ["derived", "=Model!A3", ""],
+            ["text", "=Model!A4", ""],
+            ["said", "=Model!A5", "yes/no"],
+        ],
+    }
+    tables = {"xlmc_assumptions": "Inputs!A1:D2", "xlmc_forecasts": "Wanted!A1:C5"}
+    workbook_of(rows, tables).save(tmp_path / "kinds.xlsx")
+    outcome = xlmc("check", "kinds.xlsx")
+    assert outcome.code == 0
+    lines = {line.split()[0]: line for line in outcome.out.splitlines() if line.strip()}
+    assert {name: "51 %" in lines[name] for name in ("number", "derived", "text", "said")} == {
+        "number": True,
+        "derived": False,
+        "text": False,
+        "said": False,
+    }
+    assert "Low 0.12345678901234, High 0.9" in outcome.out

@@ -164,3 +164,19 @@ def test_signs_of_thousands_and_decimals():
             assert number_text(1234.5) == "1 234,5"
         assert number_text(1234.5) == "1.234,5"
     assert number_text(1234.5) == "1,234.5"
+
+
+@pytest.mark.parametrize(
+    ("value", "typed", "computed"),
+    [
+        (0.12345678901234, "0.12345678901234", "0.123457"),
+        (1234.56789012345, "1,234.56789012345", "1,234.57"),
+        (49.9903986800412, "49.9903986800412", "49.9904"),
+        (0.1 + 0.2, "0.3", "0.3"),
+        (1 / 3, "0.333333", "0.333333"),
+        (12345678901234.0, "12,345,678,901,234", "12,345,678,901,234"),
+    ],
+)
+def test_numbers_that_a_person_typed_have_all_of_their_digits(value, typed, computed):
+    assert exact_text(value, typed=True) == typed
+    assert exact_text(value) == computed

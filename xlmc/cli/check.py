@@ -138,6 +138,7 @@ def _standing(assumption: Assumption) -> str:
 def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> None:
     from xlmc.analysis.results.statements.in_words import distribution_text, evidence_text, given_text, limits_text
     from xlmc.cli.printing import table
+    from xlmc.montecarlo.definitions.stating import NOT_ROUNDED
     from xlmc.montecarlo.number_text import exact_text, percent
 
     table(
@@ -146,11 +147,14 @@ def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> 
         [(a.name, str(a.cell), a.units, distribution_text(a), _standing(a)) for a in definitions.assumptions],
     )
     stated = any(f.says_how for f in definitions.forecasts)
+    words = [f for f in definitions.forecasts if f.kind in NOT_ROUNDED]  # which have no range
+    if model is not None:
+        words += [f for n, f in enumerate(model.forecasts) if f.name in model.two_valued or n in model.categories]
     table(
         "Forecasts",
         ("Name", "Cell", "Units", "Central range", *["Report to", "Kind", "Role"] * stated),
         [
-            (f.name, str(f.cell), f.units, percent(f.central), *(_stated(f) if stated else ()))
+            (f.name, str(f.cell), f.units, "" if f in words else percent(f.central), *(_stated(f) if stated else ()))
             for f in definitions.forecasts
         ],
     )

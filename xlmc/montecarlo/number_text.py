@@ -147,14 +147,19 @@ def whole_text(value: float) -> str:
     return _styled(repr(float(value)).removesuffix(".0"))
 
 
-def exact_text(value: float) -> str:
+def exact_text(value: float, *, typed: bool = False) -> str:
     """Write a number that is exact, up to rounding in formulas, in the fewest digits, six or more, that say what it is;
-    in six where no decimal number is.
+    in six where no decimal number is. One that a person has `typed` is one, with up to 15 digits.
 
     >>> exact_text(1234567.8), exact_text(0.1 + 0.2), exact_text(1 / 3)
     ('1,234,567.8', '0.3', '0.333333')
+    >>> exact_text(0.12345678901234), exact_text(0.12345678901234, typed=True)
+    ('0.123457', '0.12345678901234')
     """
-    return number_text(value, exact_digits(value) or _DIGITS)
+    digits = exact_digits(value)
+    if typed and digits is None:
+        digits = next((most for most in (14, MOST_DIGITS) if float(f"{value:.{most}g}") == value), None)
+    return number_text(value, digits or _DIGITS)
 
 
 def exact_digits(value: float) -> int | None:

@@ -54,7 +54,10 @@ def pages(files):
 
 @pytest.fixture(scope="module")
 def word(files):
-    return docx.Document(files[1])
+    found = docx.Document(files[1])
+    for run in found.element.iter("{http://schemas.openxmlformats.org/wordprocessingml/2006/main}t"):
+        run.text = run.text.replace("\u00a0", " ")
+    return found
 
 
 def texts_of_word(word):
@@ -254,6 +257,13 @@ def test_word_has_headings_captions_heading_rows_and_numbered_pages(files, word)
         assert package.read("word/document.xml").count(b"<w:tblHeader/>") == len(word.tables)
         foot = b"".join(package.read(name) for name in package.namelist() if "footer" in name)
     assert foot.count(b"fldSimple w:instr") == 2
+
+
+def test_no_line_of_word_ends_between_a_number_and_its_percent_sign_unit_or_error(files):
+    found = "\n".join(texts_of_word(docx.Document(files[1])))
+    assert len(re.findall(r"\d\u00a0(?:%|mph)(?!\w)", found)) > 50
+    assert len(re.findall(r"±\u00a0\d", found)) > 100
+    assert not re.search(r"\d (?:%|mph)(?!\w)|± \d", found)
 
 
 def test_texts_of_a_person_never_become_markup(pages, word):

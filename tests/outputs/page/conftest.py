@@ -26,7 +26,9 @@ class Node:
 
     @property
     def text(self) -> str:
-        return "".join(child if isinstance(child, str) else child.text for child in self.children)
+        """All text in it, with spaces where no line may be broken as others."""
+        found = "".join(child if isinstance(child, str) else child.text for child in self.children)
+        return found if self.tag in ("script", "style") else found.replace("\u00a0", " ")
 
     def all(self, tag: str | None = None, **attributes: str) -> list[Node]:
         wanted = {key.rstrip("_").replace("_", "-"): value for key, value in attributes.items()}

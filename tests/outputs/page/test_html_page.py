@@ -72,6 +72,12 @@ def test_the_answer_says_what_its_errors_mean(run, page_of):
     assert error_sentence(run.model.workbook) in page_of(run).all("section", id="answer")[0].text
 
 
+def test_no_line_ends_between_a_number_and_its_percent_sign_or_error(text_of, run):
+    page = re.sub(r"<(script|style|code|svg)\b.*?</\1>|<[^>]*>", "", text_of(run), flags=re.DOTALL)
+    assert len(re.findall(r"\d\u00a0%", page)) > 20
+    assert not re.search(r"\d %|± \d", page)
+
+
 def test_statistics_are_the_numbers_of_the_sheet(run, book, page_of):
     (section,) = page_of(run).all("section", id="statistics")
     assert sorted(section.numbers) == numbers_of(book["Statistics"])

@@ -189,7 +189,7 @@ class Assumption:
         value, stated = self.given[key], self.stated.get(key)
         if stated is not None:
             return stated.written(PLAIN if stated.value is None else self.form_of(key, stated.value))
-        return str(value) if isinstance(value, Cell) else self.form_of(key, value).number(value)
+        return str(value) if isinstance(value, Cell) else self.form_of(key, value).number(value, typed=True)
 
     def form_of(self, key: str, value: float) -> Form:
         """Return how a number is written: as its cell where it is a value of the quantity itself, or a distance of
@@ -282,7 +282,7 @@ class Filter:
         value, stated = getattr(self, key), self.stated.get(key)
         if stated is not None:
             return stated.written(self.form)
-        return str(value) if isinstance(value, Cell) else self.form.number(value)
+        return str(value) if isinstance(value, Cell) else self.form.number(value, typed=True)
 
     @property
     def formulas(self) -> dict[str, Cell]:
@@ -338,7 +338,7 @@ class Solve:
 
 
 def _said(given: Parameter) -> str:
-    return str(given) if isinstance(given, Cell) else exact_text(given)
+    return str(given) if isinstance(given, Cell) else exact_text(given, typed=True)
 
 
 @dataclass(frozen=True, slots=True)

@@ -114,9 +114,9 @@ class Form:
         before, after = _affixes(self.code.partition(";")[0])
         return (before if _is_money(before) else ""), (after if _is_money(after) else "")
 
-    def number(self, value: float, decimals: int | None = None) -> str:
+    def number(self, value: float, decimals: int | None = None, *, typed: bool = False) -> str:
         """Write a number without an error, to so many decimals of what is written; by default with all that it has, up
-        to six digits or more.
+        to six digits or more, and with all that a person has `typed`.
         """
         if not math.isfinite(value):
             return ""
@@ -124,7 +124,7 @@ class Form:
             return self._moment(value)
         scaled = self._scaled(value)
         if decimals is None:
-            text = self._whole_coins(exact_text(abs(scaled)))
+            text = self._whole_coins(exact_text(abs(scaled), typed=typed))
         elif scaled and decimals + two_digit_exponent(scaled) >= MOST_DIGITS:
             text = exact_text(abs(scaled))  # decimals below its last bit say nothing
         elif is_far(scaled):

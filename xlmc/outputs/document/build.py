@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["PAPERS", "Wanted", "build", "check_wanted", "check_wanted_of", "further_sections"]
+__all__ = ["PAPERS", "Wanted", "build", "check_wanted", "check_wanted_of", "further_sections", "units_of"]
 
 PAPERS: Final = ("letter", "a4")
 
@@ -113,7 +113,14 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
         cover=tuple(cover),
         blocks=tuple(_numbered(blocks)),
         paper=wanted.paper,
+        units=units_of(simulation.model),
     )
+
+
+def units_of(model: CompiledModel) -> tuple[str, ...]:
+    """Return the units of the forecasts and assumptions."""
+    units = [each.units for each in model.forecasts] + [each.units for each in model.assumptions]
+    return tuple(dict.fromkeys(filter(None, units)))
 
 
 def _numbered(blocks: Iterable[Block]) -> Iterator[Block]:

@@ -26,6 +26,7 @@ from xlmc.outputs.document.parts import (
     cell_text,
 )
 from xlmc.outputs.document.typst_writer import UNDATED, pictures
+from xlmc.outputs.document.unbroken import unbroken
 
 __all__ = ["docx_bytes"]
 
@@ -79,7 +80,7 @@ class _Writer:
                     for sentence in block.led:
                         paragraph = self._file.add_paragraph(style="List Bullet")
                         for text, bold in zip(sentence, (True, None), strict=True):
-                            run = paragraph.add_run(printable(text))
+                            run = paragraph.add_run(_said(text))
                             run.font.size, run.bold = _points(_SMALL if look == "small" else _BODY), bold
                 case Code(text):
                     run = self._file.add_paragraph().add_run(printable(text))
@@ -139,12 +140,12 @@ class _Writer:
 
     def _paragraph(self, text: str, size: float, *, bold: bool = False) -> Any:
         made = self._file.add_paragraph()
-        run = made.add_run(printable(text))
+        run = made.add_run(_said(text))
         run.font.size, run.bold = _points(size), bold or None
         return made
 
     def _caption(self, text: str, *, before: bool = False, within: Any = None) -> None:
-        paragraph = (within or self._file).add_paragraph(printable(text), style="Caption")
+        paragraph = (within or self._file).add_paragraph(_said(text), style="Caption")
         paragraph.paragraph_format.keep_with_next = before
 
     def _figure(self, within: Any, figure: Figure, paragraph: Any = None) -> None:
@@ -205,8 +206,13 @@ class _Writer:
         if isinstance(content, Drawing | Chart):
             self._picture(paragraph, content)
         else:
-            run = paragraph.add_run(printable(cell_text(content)))
+            run = paragraph.add_run(_said(cell_text(content)))
             run.font.size, run.bold = _points(size), bold or None
+
+
+def _said(text: str) -> str:
+    """Return a text to read, whose numbers stay with their units."""
+    return printable(unbroken(text))
 
 
 def _points(size: float) -> Any:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cache
 from html import escape
+from typing import Final
 
 from xlmc.montecarlo.interruption import checkpoint
+from xlmc.outputs.document.unbroken import unbroken
 
 __all__ = ["EMPTY", "Html", "element", "join", "void"]
 
@@ -29,6 +31,9 @@ class Html:
 
 EMPTY = Html("")
 
+_VERBATIM: Final = frozenset({"code", "pre", "script", "style", "textarea"})
+"""Elements whose text may be typed or read by a program."""
+
 
 def element(name: str, /, *children: Html | str, **attributes: str | None) -> Html:
     """Return an element; strings in it are escaped, attributes that are None are left out.
@@ -39,7 +44,8 @@ def element(name: str, /, *children: Html | str, **attributes: str | None) -> Ht
     '<b class="x">a &lt; b</b>'
     """
     checkpoint()
-    return Html(f"<{name}{_attributes(attributes)}>{join(children).source}</{name}>")
+    inner = _as_it_is(children) if name in _VERBATIM else join(children).source
+    return Html(f"<{name}{_attributes(attributes)}>{inner}</{name}>")
 
 
 def void(name: str, /, **attributes: str | None) -> Html:
@@ -49,7 +55,11 @@ def void(name: str, /, **attributes: str | None) -> Html:
 
 def join(children: tuple[Html | str, ...] | list[Html]) -> Html:
     """Join children as HTML; strings are escaped."""
-    return Html("".join([each.source if isinstance(each, Html) else escape(each) for each in children]))
+    return Html("".join([each.source if isinstance(each, Html) else escape(unbroken(each)) for each in children]))
+
+
+def _as_it_is(children: tuple[Html | str, ...]) -> str:
+    return "".join([each.source if isinstance(each, Html) else escape(each) for each in children])
 
 
 def _attributes(attributes: dict[str, str | None]) -> str:

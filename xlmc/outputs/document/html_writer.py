@@ -141,14 +141,14 @@ def _measured_html(cell: Measured) -> Html:
     """Return a number and its error, which carry their full values."""
     if cell.found is None or not math.isfinite(cell.found.value):
         return element("span", cell.text)
-    value, sign, error = cell.text.partition(" ± ")
+    value, _, error = cell.text.partition(" ± ")
     shown = number(cell.found.value, value)
     if not error or cell.found.error is None:
         return number(cell.found.value, cell.text)
     beside = number(cell.found.error, error)
     if cell.look in ("answer", "range"):
-        return element("span", shown) + Html(" ") + element("span", f"{sign.strip()} ", beside)
-    return shown + Html(sign) + beside
+        return element("span", shown) + Html(" ") + element("span", "±\u00a0", beside)
+    return shown + Html(" ±\u00a0") + beside
 
 
 def _lines(text: str) -> Iterable[Html | str]:

@@ -441,6 +441,7 @@ class Document:
         blocks: everything else, from the first page to the last.
         paper: of the pages.
         signs: of thousands and decimals: by default those of where the document is made.
+        units: which numbers in its texts may have behind them, in the same line.
     """
 
     title: str
@@ -452,6 +453,7 @@ class Document:
     blocks: tuple[Block, ...]
     paper: Paper = "letter"
     signs: tuple[str, str] = field(default_factory=signs)
+    units: tuple[str, ...] = ()
 
     @property
     def with_next(self) -> list[tuple[Block | tuple[Figure, ...], Block | None]]:

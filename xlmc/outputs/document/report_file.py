@@ -12,6 +12,7 @@ from xlmc.excel.workbook.writer import check_folder, write_workbook
 from xlmc.montecarlo.number_text import in_signs
 from xlmc.outputs.document.build import Wanted, build
 from xlmc.outputs.document.parts import Document
+from xlmc.outputs.document.unbroken import in_units
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -59,7 +60,7 @@ def document_bytes(document: Document, ending: str) -> bytes:
     Raises:
         SimulationError: a library is missing, or no font has a character.
     """
-    with in_signs(*document.signs):
+    with in_signs(*document.signs), in_units(document.units):
         if ending.casefold() == ".pdf":
             from xlmc.outputs.document.typst_writer import pdf_bytes
 

@@ -92,7 +92,7 @@ const Copies = {
           above.left -= 1;
           line.push(above.text);
         } else {
-          const cell = cells.shift(), text = cell.innerText.trim();
+          const cell = cells.shift(), text = cell.innerText.trim().replace(/\u00a0(?!\d{3}(?!\d))/g, " ");
           if (cell.rowSpan > 1) shared[line.length] = { left: cell.rowSpan - 1, text };
           line.push(text, ...Array(cell.colSpan - 1).fill(""));
         }

@@ -25,9 +25,11 @@ from xlmc.excel.workbook.writer import check_folder, write_workbook
 from xlmc.montecarlo.definitions.number_styles import in_style_of
 from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.outputs.document import further_sections
+from xlmc.outputs.document.build import units_of
 from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.document.sections import in_order
+from xlmc.outputs.document.unbroken import in_units
 from xlmc.outputs.histogram import figures_of
 from xlmc.outputs.page.forecast_charts import charts, overlays
 from xlmc.outputs.page.payload import payload_text
@@ -154,6 +156,11 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
         command: what the person typed, for the record.
     """
     scenario_answers(simulation)  # cells may ask about them, and warnings tell of those that cannot
+    with in_units(units_of(simulation.model)):
+        return _page(simulation, beside, command)
+
+
+def _page(simulation: RunResult, beside: RunResult | None, command: str | None) -> str:
     figures, name = figures_of(simulation, simulation.detailed), simulation.model.workbook.name
     found = None if simulation.weighting is not None else sensitivities(simulation)
     parts = {

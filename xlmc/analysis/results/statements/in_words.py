@@ -32,7 +32,7 @@ def plain_text(value: Parameter) -> str:
 
 def given_text(value: Parameter) -> str:
     """Return a number as people read it, with all of its digits: `6,661`; or the cell that holds it."""
-    return str(value) if isinstance(value, Cell) else exact_text(value)
+    return str(value) if isinstance(value, Cell) else exact_text(value, typed=True)
 
 
 def parameters_text(assumption: Assumption) -> str:

@@ -9,6 +9,8 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from xlmc.engine.engines import ENGINES
+from xlmc.excel.functions.families import REGISTRY
+from xlmc.montecarlo.definitions.run_settings import SETTINGS
 from xlmc.montecarlo.definitions.stopping import GOALS
 from xlmc.montecarlo.definitions.tables.settings import _settings
 from xlmc.montecarlo.distributions import FAMILIES
@@ -43,11 +45,15 @@ def _expected() -> Iterator[tuple[str, str, str]]:
     for option in (option for goal in GOALS.values() for option in goal.options):
         typed = f"--{option.name.replace('_', '-')}"
         yield "command-line.md", typed, f"`{typed}`"
+    for row in SETTINGS.values():
+        yield from (("command-line.md", option, f"`{option}`") for option in row.options)
     for setting in _settings(ENGINES).values():
         if setting.name not in OF_EARLIER_BOOKS:
             yield "workbooks.md", setting.name, f"`{setting.name}`"
     for family in FAMILIES.values():
         yield "distributions.md", family.name, f"\n## {family.name}\n"
+    for function in {each.name for each in REGISTRY.values() if each.name[0].isalpha() and each.name.isupper()}:
+        yield "functions.md", function, f"`{function}`"
 
 
 if __name__ == "__main__":

@@ -1,8 +1,12 @@
-"""Build every template workbook: `python templates/build.py [folder]`, without a folder where they are committed."""
+"""Build template workbooks: `python templates/build.py [FOLDER [NAME …]]`.
+
+Without a folder they are built where they are committed, and without names all are.
+"""
 
 from __future__ import annotations
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
@@ -75,11 +79,11 @@ def editions(template: Template) -> dict[Edition, Template]:
     return made
 
 
-def build(folder: Path) -> list[Path]:
-    """Write every edition of every template into `folder`; the paths written are returned."""
+def build(folder: Path, names: Sequence[str] = ()) -> list[Path]:
+    """Write every edition of the templates, or of those named, into `folder`; the paths written are returned."""
     written = []
-    for name, template in TEMPLATES.items():
-        for units, described in editions(template).items():
+    for name in names or TEMPLATES:
+        for units, described in editions(TEMPLATES[name]).items():
             path = folder / file_name(name, units)
             write_book(described, path)
             written.append(path)
@@ -87,4 +91,4 @@ def build(folder: Path) -> list[Path]:
 
 
 if __name__ == "__main__":
-    build(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE)
+    build(Path(sys.argv[1]) if len(sys.argv) > 1 else HERE, sys.argv[2:])

@@ -1,4 +1,4 @@
-"""Blocks on the terminal: paragraphs, and tables that fit its width. Charts are told in words; files draw them."""
+"""Blocks on the terminal: paragraphs, and tables that fit its width. Charts are described in words; files draw them."""
 
 from __future__ import annotations
 

@@ -115,11 +115,11 @@ def _show(found: Prepared, workbook: Workbook) -> None:
             continue
         shown = rows[:_MOST_TOLD]
         forms = forms_of(workbook, [each.cell for each in shown])
-        told = [
+        lines = [
             (each.name, str(each.cell), content_in(form, each.value), each.units)
             for each, form in zip(shown, forms, strict=True)
         ]
-        table(title, ("Name", "Cell", "Value", "Units"), told, right=(2,))
+        table(title, ("Name", "Cell", "Value", "Units"), lines, right=(2,))
         if len(rows) > _MOST_TOLD:
             say(f"… and {count_text(len(rows) - _MOST_TOLD)} more.")
     if found.found.further:

@@ -175,5 +175,5 @@ def end_early(ended: str) -> None:
         Exit: it was.
     """
     if ended:
-        say(f"xlmc: {ended}; what was known by then is what is told.", err=True)
+        say(f"xlmc: {ended}; the output is what was known by then.", err=True)
         raise click.exceptions.Exit(INTERRUPTED)

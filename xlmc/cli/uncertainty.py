@@ -34,7 +34,7 @@ __all__ = ["uncertainty"]
     "--percentile",
     type=float,
     multiple=True,
-    help="A percentile whose band is told; may be given several times.  [default: 5, 50, 95]",
+    help="A percentile whose band is shown; may be given several times.  [default: 5, 50, 95]",
 )
 @click.option(
     "--uncertain",

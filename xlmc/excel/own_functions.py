@@ -200,13 +200,13 @@ def _module(source: bytes, path: str) -> ModuleType:
             raise WorkbookError(f"the file is not Python: {error.msg}", where=path, hint=hint) from error
         message = f"the file is not Python: {error.msg} (line {error.lineno})"
         raise WorkbookError(message, where=path, hint="Correct that line") from error
-    except Exception as error:  # whatever a person's code raises is told in words
-        message = f"the file fails when it is run: {_told(error, path)}"
+    except Exception as error:  # whatever a person's code raises becomes a message
+        message = f"the file fails when it is run: {_fault_in_words(error, path)}"
         raise WorkbookError(message, where=path, hint="Correct it; python can run it alone") from error
     return module
 
 
-def _told(error: BaseException, path: str) -> str:
+def _fault_in_words(error: BaseException, path: str) -> str:
     """Return an error in words, with the line of the file in which it arose."""
     lines = [frame.lineno for frame in traceback.extract_tb(error.__traceback__) if frame.filename == path]
     linecache.checkcache(path)
@@ -327,9 +327,9 @@ class _Body:
         try:
             with np.errstate(all="ignore"):
                 return self.function(*arguments)
-        except Exception as error:  # whatever a person's code raises is told in words
+        except Exception as error:  # whatever a person's code raises becomes a message
             hint = f"correct the function; it is called with {self._shapes(arguments)}"
-            raise self._error(f"failed: {_told(error, self.path)}", hint) from error
+            raise self._error(f"failed: {_fault_in_words(error, self.path)}", hint) from error
 
     def _shapes(self, arguments: Sequence[Any]) -> str:
         if getattr(self.function, _SCALAR, False):

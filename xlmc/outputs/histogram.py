@@ -210,8 +210,8 @@ def histogram(values: Values, low: float, high: float, form: Form = PLAIN) -> Hi
 def bars_of(row: SummaryRow, sample: Sample) -> Histogram | None:
     """Return the bars of a forecast: one for each text, for no and yes, for each whole number; bins of the others."""
     if row.categories:
-        told = [*frequent_texts(row.categories)[0]]
-        return _named_bars(sample, row.numbers[: len(told)], told, row.form)
+        texts = [*frequent_texts(row.categories)[0]]
+        return _named_bars(sample, row.numbers[: len(texts)], texts, row.form)
     if row.yes is not None and sample.yes_no_at_most:
         return _named_bars(sample, [0.0, 1.0], ["no", "yes"], row.form)
     low, high = row.low.value, row.high.value

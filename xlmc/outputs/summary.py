@@ -413,14 +413,14 @@ def rejection_rows(simulation: RunResult) -> list[tuple[str, str, str, str]]:
     return [(f.name, limits_text(f), count_text(rejected), count_text(only)) for f, rejected, only in counts]
 
 
-def first_forecasts(told: str, shown: int, left: int) -> str:
-    """Return the sentence that says of how many forecasts something is told, and how to ask for more.
+def first_forecasts(begin: str, shown: int, left: int) -> str:
+    """Return the sentence that says of how many forecasts something is shown, and how to ask for more.
 
     Args:
-        told: what is told, as the sentence begins: `Charts are drawn of`.
+        begin: what is shown, as the sentence begins: `Charts are drawn of`.
         shown: of how many.
         left: how many others there are.
     """
     total = shown + left
     more = f"for all, type --detailed {total}, or Detailed forecasts in xlmc_settings"
-    return f"{told} the first {count_text(shown)} of {count_text(total)} forecasts; {more}."
+    return f"{begin} the first {count_text(shown)} of {count_text(total)} forecasts; {more}."

@@ -220,11 +220,11 @@ def test_of_many_inputs_and_answers_those_that_matter_are_told():
     )
     found = xlmc.stress(model, trials=20_000)
     assert [each.name for each in found.forecasts] == [f"y{at}" for at in range(20)]
-    assert found.untold == 5
+    assert found.left_out == 5
     told = [pair[0].assumption for pair in found.ranked("y3") if "y3" in pair[0].parts]
     assert len(told) == 20
     assert set(told) >= set(names[14:])
     assert told[0] in names[27:]
     assert len(found.scenarios[0].inputs) == 20
-    assert "Told of the first 20 forecasts; 5 more can be named" in str(found)
+    assert "Shown are the first 20 forecasts; 5 more can be named" in str(found)
     assert [each.name for each in xlmc.stress(model, trials=2_000, forecasts=["y24"]).forecasts] == ["y24"]

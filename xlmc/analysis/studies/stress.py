@@ -69,7 +69,7 @@ SHARE: Final = 10.0
 SCENARIO: Final = "above P90"
 
 MOST: Final = 20
-"""Forecasts that are told where none is named, and assumptions for each of them."""
+"""Forecasts that are shown where none is named, and assumptions for each of them."""
 
 _LEAST: Final = 30
 """Trials that a part must have for a statistic of it."""
@@ -183,14 +183,14 @@ class Stressed(Shown):
     Attributes:
         run: of the workbook.
         share: of the accepted trials in a tail, in percent.
-        forecasts: those that are told.
+        forecasts: those that are shown.
         forms: how the numbers of each are written; of a share as one.
-        texts: of answers that are texts, the one whose share is told.
+        texts: of answers that are texts, the one whose share is shown.
         base: the answers of all trials.
         tails: of each assumption the low one, then the high one; each has the forecasts of which the assumption is
             among the 20 that move the mean most.
         scenarios: of each forecast that is a number.
-        untold: forecasts, from the 21st on, that are not told since nobody asked for them.
+        left_out: forecasts, from the 21st on, that are not shown since nobody asked for them.
         still: assumptions that have one value in all accepted trials, or hardly more.
         valueless: forecasts that are a number in hardly any trial.
     """
@@ -203,7 +203,7 @@ class Stressed(Shown):
     base: dict[str, Part]
     tails: tuple[Tail, ...]
     scenarios: tuple[Scenario, ...]
-    untold: int
+    left_out: int
     still: tuple[str, ...]
     valueless: tuple[str, ...]
 
@@ -240,7 +240,7 @@ def stress(
         share: of the accepted trials in each tail, in percent; above 0 and up to 50.
         assumptions: names of those that are stressed, joined by commas, `*` for any letters; all that are drawn where
             there are none.
-        forecasts: names of those that are told, in the same form; the first 20 where there are none.
+        forecasts: names of those to show, in the same form; the first 20 where there are none.
         scenarios: the answers whose inputs are looked at: `above P90`, `below 20`, `between P5 and P10`; a number
             without P is in the unit of the forecast.
         trials: of the run; as in `Model.simulate`, like what follows.
@@ -262,9 +262,9 @@ def stress(
         *dict.fromkeys(n for text in assumptions for n in names_of_rows(text, model.live, "assumption that is drawn"))
     ]
     asked = {n for text in forecasts for n in names_of_rows(text, model.forecasts, "forecast")}
-    stressed, told = stressed or live, [each for each in model.forecasts if not asked or each.name in asked]
-    left_out = 0 if asked else max(len(told) - MOST, 0)
-    told = told[: len(told) - left_out]
+    stressed, reported = stressed or live, [each for each in model.forecasts if not asked or each.name in asked]
+    left_out = 0 if asked else max(len(reported) - MOST, 0)
+    reported = reported[: len(reported) - left_out]
     if not stressed:
         raise SimulationError(
             "Nothing is drawn", where=model.workbook.name, hint="xlmc check shows which assumptions are not needed"
@@ -277,37 +277,39 @@ def stress(
         accepted = f"{count_text(run.accepted)} of {count_text(run.trials)} trials"
         message = f"{accepted} were accepted, and a tail of {number_text(share)} % then has fewer than {_LEAST}"
         raise SimulationError(message, hint="Give more trials (-n), or larger tails (--share)")
-    columns = {each.name: _Answers.of(run, each) for each in told}
+    columns = {each.name: _Answers.of(run, each) for each in reported}
     valueless = tuple(name for name, each in columns.items() if each.accepted.m < _LEAST)
-    told = [each for each in told if each.name not in valueless]
-    base = {each.name: columns[each.name].of_all for each in told}
+    reported = [each for each in reported if each.name not in valueless]
+    base = {each.name: columns[each.name].of_all for each in reported}
     tell("the tails of the assumptions")
-    moves = {name: found for name in stressed if (found := _moves(run, name, share / 100.0, told, columns)) is not None}
-    chosen = {each.name: {*sorted(moves, key=lambda name: -moves[name][each.name])[:MOST]} for each in told}
+    moves = {
+        name: found for name in stressed if (found := _moves(run, name, share / 100.0, reported, columns)) is not None
+    }
+    chosen = {each.name: {*sorted(moves, key=lambda name: -moves[name][each.name])[:MOST]} for each in reported}
     tails: list[Tail] = []
     for name in moves:
         tell(name)
-        here = [each for each in told if name in chosen[each.name]]
+        here = [each for each in reported if name in chosen[each.name]]
         tails += [_tail(run, name, share / 100.0, is_high, here, columns) for is_high in (False, True) if here]
     tell("what distinguishes answers")
     inputs = _Inputs(run, tuple(moves))
     parts = [
         _scenario(inputs, columns[each.name], words, wanted)
-        for each in told
+        for each in reported
         if not columns[each.name].is_counted
         for words, wanted in ranges
     ]
     return Stressed(
         run=run,
         share=share,
-        forecasts=tuple(told),
-        forms={each.name: columns[each.name].form for each in told},
-        texts={each.name: text for each in told if (text := columns[each.name].text) is not None},
+        forecasts=tuple(reported),
+        forms={each.name: columns[each.name].form for each in reported},
+        texts={each.name: text for each in reported if (text := columns[each.name].text) is not None},
         base=base,
         tails=tuple(tails),
         scenarios=tuple(parts),
         still=tuple(name for name in stressed if name not in moves),
-        untold=left_out,
+        left_out=left_out,
         valueless=valueless,
     )
 
@@ -504,7 +506,7 @@ def _limit(x: Floats, share: float, is_high: bool) -> float:
 
 
 def _moves(
-    run: RunResult, name: str, share: float, told: Sequence[Forecast], columns: dict[str, _Answers]
+    run: RunResult, name: str, share: float, reported: Sequence[Forecast], columns: dict[str, _Answers]
 ) -> dict[str, float] | None:
     """Return by how much the tails of an assumption move the mean of each forecast; None where it has no tails."""
     x = np.asarray(run.inputs[name])
@@ -512,7 +514,7 @@ def _moves(
     if limit == lower or any(not _LEAST <= np.count_nonzero(inside) < x.size for inside in sides):
         return None
     found = {}
-    for each in told:
+    for each in reported:
         answers = columns[each.name].accepted
         means = [answers.values[inside[answers.trials]] for inside in sides]
         whole = float(answers.values.mean())
@@ -521,14 +523,14 @@ def _moves(
 
 
 def _tail(
-    run: RunResult, name: str, share: float, is_high: bool, told: Sequence[Forecast], columns: dict[str, _Answers]
+    run: RunResult, name: str, share: float, is_high: bool, reported: Sequence[Forecast], columns: dict[str, _Answers]
 ) -> Tail:
     """Restrict an assumption to a tail."""
     x = np.asarray(run.inputs[name])
     limit = _limit(x, share, is_high)
     low, high = (limit, math.inf) if is_high else (-math.inf, limit)
     some = _Some.of(x, low, high, moving=(is_high, not is_high))
-    parts = {each.name: part for each in told if (part := columns[each.name].part(some)) is not None}
+    parts = {each.name: part for each in reported if (part := columns[each.name].part(some)) is not None}
     return Tail(name, is_high, limit, int(np.count_nonzero(some.inside)), parts)
 
 

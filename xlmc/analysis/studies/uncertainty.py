@@ -76,7 +76,7 @@ _CURVE: Final = np.array([0.5, 1, 2, *range(5, 100, 5), 98, 99, 99.5]) / 100.0
 _LEAST_INNER: Final = 2
 
 _NOTABLE: Final = 0.05
-"""The part of a band's width from which on it is told that the scatter of the inner trials causes it."""
+"""The part of a band's width from which on a sentence says that the scatter of the inner trials causes it."""
 
 Floats = NDArray[np.float64]
 Tell = Callable[[str], None]
@@ -153,8 +153,8 @@ class ForecastBands:
     causes: Mapping[str, Estimate]
 
     @property
-    def told(self) -> list[Band]:
-        """The bands that are told in sentences: all probabilities, and of other numbers the first and the last."""
+    def stated(self) -> list[Band]:
+        """The bands that sentences give: all probabilities, and of other numbers the first and the last."""
         numbers = [band for band in self.bands if not band.is_share]
         return [*dict.fromkeys((*numbers[:1], *numbers[-1:])), *(band for band in self.bands if band.is_share)]
 
@@ -190,7 +190,7 @@ class TwoLoops(Shown):
     @property
     def wide(self) -> list[tuple[ForecastBands, Band]]:
         """The bands told in sentences that more inner trials would make notably narrower."""
-        return [(each, band) for each in self.forecasts for band in each.told if band.excess > _NOTABLE]
+        return [(each, band) for each in self.forecasts for band in each.stated if band.excess > _NOTABLE]
 
     def __getitem__(self, name: str) -> ForecastBands:
         """Return the bands of a forecast.
@@ -228,10 +228,10 @@ def uncertainty(
         outer: draws of the outer loop, 20 to 16,384.
         inner: trials for each of them, 2 or more.
         confidence: of the bands, in percent.
-        percents: the percentiles whose bands are told, above 0 and below 100.
+        percents: the percentiles whose bands are shown, above 0 and below 100.
         uncertain: names of the assumptions that are uncertain, instead of what their rows say: joined by commas, `*`
             for any letters.
-        judged: names of the forecasts that are told, in the same form; all where there are none.
+        judged: names of the forecasts to show, in the same form; all where there are none.
         seed: of the run; as in `Model.simulate`, like what follows.
         engine: of the run.
         jobs: of the run.

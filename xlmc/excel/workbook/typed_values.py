@@ -93,7 +93,7 @@ def read_value_rows(path: Path, book: Workbook) -> ValueRows:
     """Return the rows of a CSV file whose headings are cells; or one row, where the headings are Cell and Value.
 
     Raises:
-        WorkbookError: the file cannot be read, a heading is no cell, or a value is none; told of the line.
+        WorkbookError: the file cannot be read, a heading is no cell, or a value is none; the message names the line.
     """
     _, lines = lines_of(path)
     if not lines:

@@ -36,7 +36,7 @@ class Findings:
         Args:
             message: what it says.
             where: the cell it is about.
-            alike: what may be so of many cells, as "text in Cell": the first is told, and how many more there are.
+            alike: what may be so of many cells, as "text in Cell": the first is named, and how many more there are.
         """
         if alike in self._alike:
             place, first, more = self._alike[alike]

@@ -143,7 +143,7 @@ def build_model(
 def _without_dashes(model: CompiledModel) -> CompiledModel:
     """Return the model without the forecasts whose cells are a dash in every trial, as they wait for inputs.
 
-    One of which nothing else is asked stays, so that it is told of.
+    One of which nothing else is asked stays, so that it is reported.
     """
     known = {each.name: model.lowering.known(Target(each.cell, each.cell)) for each in model.forecasts}
     waiting = {name for name, value in known.items() if value is not None and value.objects().ravel()[0] in _DASHES}

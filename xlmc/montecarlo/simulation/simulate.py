@@ -92,7 +92,7 @@ def run_model(
 
     A runner that is given, of this model, seed and sampling method, runs the blocks. A run of a given number of trials
     is computed in pieces of at most `pieces` trials, a power of two, for who wants `progress` more often: its numbers
-    are the same. `progress` is told the means of the forecasts to `follow`; by default of all.
+    are the same. `progress` is given the means of the forecasts to `follow`; by default of all.
     A `plan` that is given, for as many trials as the options ask for, says how they are drawn.
     """
     settings, keep_inputs = options.settings(model.definitions.settings), options.keep_inputs

@@ -59,7 +59,7 @@ def same_answers(simulation: RunResult, names: Iterable[str]) -> dict[str, tuple
     """Find forecasts that are the same number in every accepted trial and are asked the same: a formula that chooses
     one of several readings gives them.
 
-    A number that never varies, a yes and a text may be the same by coincidence, and are told of each.
+    A number that never varies, a yes and a text may be the same by coincidence, and each is reported.
 
     Args:
         simulation: the finished run.

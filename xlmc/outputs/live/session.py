@@ -94,10 +94,10 @@ _SKETCHED_DRAWS: Final = 1 << 21
 the run.
 """
 
-_Told = tuple[int, Adjustments, RunOptions]
+_RunOf = tuple[int, Adjustments, RunOptions]
 """What tells a state from others: which workbook, what was changed, and trials and seed."""
 _IN_OWN_STYLE: Final = in_style_of("own.definitions.settings.number_style")
-"""What windows are told has the workbook's signs of thousands and decimals."""
+"""What windows are sent has the workbook's signs of thousands and decimals."""
 
 OPENS_WITH: Final = 3
 """Forecasts whose charts are open at first."""
@@ -137,8 +137,8 @@ class Session:
         self.rest: RunResult | None = None
         self.behind: RunResult | None = None
         self.behind_is = "the workbook as it was opened"
-        self._behind_of: _Told | None = None
-        self._answered: _Told | None = None
+        self._behind_of: _RunOf | None = None
+        self._answered: _RunOf | None = None
         self.view = View(tuple(each.name for each in model.forecasts[:OPENS_WITH]))
         self._pin_next = True
         self._dragged = False
@@ -162,7 +162,7 @@ class Session:
         self._failed: set[Stage] = set()
         self._history = History()
 
-    # What windows are told
+    # What windows are sent
 
     @_IN_OWN_STYLE
     def greeting(self) -> list[Message]:
@@ -471,12 +471,12 @@ class Session:
         self.view = view
 
     @property
-    def _now(self) -> _Told:
+    def _now(self) -> _RunOf:
         """Return what tells a state from others: the workbook, what was changed, and how it is run."""
         return id(self.own), self.adjustments, self.asked
 
     @property
-    def _drawn(self) -> _Told:
+    def _drawn(self) -> _RunOf:
         """Return what the trials that move depend on: all but how answers are stated, and how long runs at rest are."""
         return id(self.own), replace(self.adjustments, forecasts={}), RunOptions(seed=self.asked.seed)
 
@@ -558,7 +558,7 @@ class Session:
 
     @_IN_OWN_STYLE
     def finish(self, job: Job, outcome: Outcome) -> list[Message]:
-        """Take what a job found; returns what windows are told of it."""
+        """Take what a job found; returns what windows are sent of it."""
         if job.stage == "sketch" or job.stage not in RUNS:
             return self._finish_shown(job, outcome)
         if outcome.problem is not None:

@@ -1,7 +1,8 @@
 """What outlives a window: the scenarios of each workbook, and the workbooks that were opened last.
 
 They lie in a folder of the user's own: `~/.local/state/xlmc/live`, on macOS in `~/Library/Application Support`, on
-Windows in `%LOCALAPPDATA%`. A file that cannot be read counts as none, and is told; one that cannot be written is told.
+Windows in `%LOCALAPPDATA%`. A file that cannot be read counts as none, and is reported, as is one that cannot be
+written.
 """
 
 from __future__ import annotations

@@ -156,12 +156,16 @@ def _settings(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
 
 
 def _cells(before: CompiledModel, after: CompiledModel) -> Iterator[str]:
-    """Name the needed cells that hold another formula or number; those of assumptions and decisions are told above."""
-    told = {each.cell for model in (before, after) for each in model.assumptions}
-    told |= {each.cell for model in (before, after) for each in model.definitions.decisions}
-    told |= {cell for model in (before, after) for each in model.definitions.solves for cell in each.typed.values()}
+    """Name the needed cells that hold another formula or number; not of assumptions and decisions."""
+    explained = {each.cell for model in (before, after) for each in model.assumptions}
+    explained |= {each.cell for model in (before, after) for each in model.definitions.decisions}
+    explained |= {
+        cell for model in (before, after) for each in model.definitions.solves for cell in each.typed.values()
+    }
     cells = [
-        cell for cell in sorted((before.read | after.read) - told) if _content(before, cell) != _content(after, cell)
+        cell
+        for cell in sorted((before.read | after.read) - explained)
+        if _content(before, cell) != _content(after, cell)
     ]
     if cells:
         named = ", ".join(map(str, cells[:_MOST_CELLS]))

@@ -1,6 +1,7 @@
 """Blocks on a sheet: paragraphs, tables of texts and numbers, and charts of Excel's own.
 
-What charts are drawn from stands on a second sheet. Pictures, which a sheet of results cannot hold, are told in words.
+What charts are drawn from stands on a second sheet. Pictures, which a sheet of results cannot hold, are described
+in words.
 """
 
 from __future__ import annotations
@@ -65,7 +66,7 @@ def write_blocks(page: Page, blocks: Iterable[Block], charting: Charting | None 
     Args:
         page: the sheet.
         blocks: to write.
-        charting: where charts are made; without it they are told in words.
+        charting: where charts are made; without it they are described in words.
         last: the column to which paragraphs reach.
     """
     spaced = True

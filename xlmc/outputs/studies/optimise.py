@@ -117,7 +117,7 @@ def _sentences(found: Optimised) -> Iterator[str]:
 
 
 def _missing(found: Optimised, best: str) -> Iterator[str]:
-    """Yield what is told first where the best of the search misses a requirement by fresh trials."""
+    """Yield what is said first where the best of the search misses a requirement by fresh trials."""
     measure = found.goal.measure
     others = [each for each in found.rivals if each.meets]
     if not others:
@@ -256,9 +256,10 @@ def _rival_row(found: Optimised, each: Rival) -> tuple[str, ...]:
 
 def _meaning(found: Optimised) -> str:
     return (
-        f"The candidates come from {found.how}, over random numbers that all share (seed {found.search_seed}); what is "
-        "told of the best comes from fresh ones, so that being chosen does not make it look better. It is what `xlmc "
-        "simulate` gives of the workbook with these decisions typed in. ± is the standard error (Monte Carlo error)."
+        f"The candidates come from {found.how}, over random numbers that all share (seed {found.search_seed}); the "
+        "numbers of the best come from fresh ones, so that being chosen does not make it look better. They are what "
+        "`xlmc simulate` gives of the workbook with these decisions typed in. ± is the standard error "
+        "(Monte Carlo error)."
     )
 
 

@@ -244,8 +244,8 @@ def _meaning(found: Stressed) -> Iterator[str]:
         yield f"Of hardly more than one value in the accepted trials, and so without tails: {'; '.join(found.still)}."
     if len(found.run.model.live) > MOST:
         yield f"Of more than {MOST} assumptions each forecast has the {MOST} that move it most."
-    if found.untold:
-        yield f"Told of the first {MOST} forecasts; {count_text(found.untold)} more can be named (--forecast)."
+    if found.left_out:
+        yield f"Shown are the first {MOST} forecasts; {count_text(found.left_out)} more can be named (--forecast)."
     filtered = "accepted " if found.run.accepted < found.run.trials else ""
     yield (
         f"A tail: the trials in which the assumption is among the lowest, or highest, {share} of its {filtered}values. "

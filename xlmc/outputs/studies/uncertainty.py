@@ -34,7 +34,7 @@ def _sentences(found: TwoLoops) -> Iterator[str]:
     from xlmc.montecarlo.number_text import number_text
 
     for each in found.forecasts:
-        for band in each.told:
+        for band in each.stated:
             if band.is_share and band.low.value == band.high.value in (0.0, 1.0):
                 share = band.form.number(band.low.value)
                 draws = f"{number_text(found.confidence)} % of the outer draws or more"

@@ -148,7 +148,7 @@ _MOST_TEXTS: Final = 6
 def _yes_text(result: ForecastResult, yes: Estimate, balances: bool) -> str:
     """`yes with probability 84.2 % ± 0.4 %, more probable than not`; any number but 0 is a yes, as in Excel.
 
-    Which of yes and no is more probable is told where that `balances`, as in court. That a lower bound is a yes makes
+    Which of yes and no is more probable is said where that `balances`, as in court. That a lower bound is a yes makes
     the answer one; where it is a no, the answer may be either.
     """
     role = result.definition.role
@@ -169,12 +169,12 @@ _OF_ROLE: Final = {Role.LOWER: "a probability of at least", Role.UPPER: "a proba
 
 
 def _probabilities(result: ForecastResult) -> Iterator[Statement]:
-    """Return what was asked of a forecast beside its range; that a yes/no is above its limit is told as a yes."""
+    """Return what was asked of a forecast beside its range; that a yes/no is above its limit is stated as a yes."""
     definition, above = result.definition, result.statistics.probability_above
     name, units = definition.name, f" {definition.units}" if definition.units else ""
     limit = definition.threshold
-    told = limit is not None and 0 <= limit < 1 and result.yes is not None and result.sample.yes_no_at_most
-    if limit is not None and above is not None and not told:
+    as_yes = limit is not None and 0 <= limit < 1 and result.yes is not None and result.sample.yes_no_at_most
+    if limit is not None and above is not None and not as_yes:
         event = f"{name} > {result.form.number(limit)}{units}"
         yield Statement(name, "threshold", _probability_text(event, above, _relation(definition.role, "above")))
     if definition.asked is not None and result.certainty is not None:

@@ -90,12 +90,12 @@ def _only_as_a_whole(each: ForecastComparison) -> str:
     """Two answers with one distribution that are not one number, as 10 + z and 10 − z."""
     found, units = each.difference, f" {each.first.units}" if each.first.units else ""
     if found.shares:
-        told = f"give another answer in {number_text(100 * found.typical**2, 2)} % of the trials that both accept"
+        how = f"give another answer in {number_text(100 * found.typical**2, 2)} % of the trials that both accept"
     else:
         typical, largest = (f"{tolerance_text(one, found.form)}{units}" for one in (found.typical, found.largest))
-        told = f"give numbers that differ by {typical} (root mean square), {largest} at most"
+        how = f"give numbers that differ by {typical} (root mean square), {largest} at most"
     return (
-        f"Of {_name(each)} only the distributions agree, and the trials do not: from the same draws the books {told}. "
+        f"Of {_name(each)} only the distributions agree, and the trials do not: from the same draws the books {how}. "
         "What is computed from it together with other answers may not agree."
     )
 

@@ -1,7 +1,7 @@
 """Several columns of measurements at once: the best family of each, how they hang together, and how sure that is.
 
 What stands in one row was measured together. The rank correlation of two columns comes from the rows in which both have
-a value. Of each pair the copula is told that describes their ranks best: its likelihood is that of the ranks, divided
+a value. Of each pair the copula is given that describes their ranks best: its likelihood is that of the ranks, divided
 by one more than their number (Genest, Ghoudi and Rivest 1995, "A semiparametric estimation procedure of dependence
 parameters in multivariate families of distributions", Biometrika 82).
 
@@ -34,7 +34,7 @@ BOOTSTRAPS: Final = 400
 _SEED: Final = 999
 _FEWEST_PAIRS: Final = 10
 _LEAST_REPEATED: Final = 0.9
-"""The share of the bootstrap's samples that a family must be fitted to, so that its parameters are told of."""
+"""The share of the bootstrap's samples that a family must be fitted to, so that its parameters are given."""
 
 
 @dataclass(frozen=True, slots=True)

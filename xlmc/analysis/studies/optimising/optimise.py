@@ -1,7 +1,7 @@
 """The best decisions: the values of the decisions of a workbook with which a statistic is largest, or smallest.
 
 The candidates are searched over random numbers that all of them share, and the chosen one is run once more with others,
-the workbook's own: what is told of it is what `xlmc simulate` gives of the workbook with these decisions typed in.
+the workbook's own: what is reported of it is what `xlmc simulate` gives of the workbook with these decisions typed in.
 """
 
 from __future__ import annotations
@@ -47,7 +47,7 @@ RUNS: Final = 60.0
 _FRESH_RUNS: Final = 30.0
 _LEAST_TRIALS: Final = 30
 _SHOWN: Final = 10
-"""Rivals that are told of."""
+"""Rivals that are listed."""
 
 Floats = NDArray[np.float64]
 Tell = Callable[[str], None]

@@ -128,9 +128,9 @@ def _assumption(
     call = findings.attempt(_call, row)
     identity = identify(row, claims, findings)
     frozen = findings.attempt(logical, row, "Frozen") or False
-    told = len(findings.problems)
+    before_cell = len(findings.problems)
     base = None if identity is None else findings.attempt(_base, row.workbook, computed, identity[1], frozen, findings)
-    has_cell = identity is not None and len(findings.problems) == told
+    has_cell = identity is not None and len(findings.problems) == before_cell
     kind = findings.attempt(_family, row)
     given: dict[str, Parameter] = {}
     family = data = None

@@ -106,8 +106,8 @@ def _unused(row: Row, name: str, cell: Cell) -> Filter:
     aside = Findings()
     limits: dict[str, Any] = {key: aside.attempt(parameter, row, heading) for key, heading in LIMITS.items()}
     because, only_for = (aside.attempt(optional_text, row, heading) or "" for heading in ("Because", "Only for"))
-    told: dict[str, Any] = {"because": because, "only_for": _listed(only_for), "notes": row.notes(_FILTER_COLUMNS)}
-    return Filter(name=name, cell=cell, row=row.where, used=False, **limits, **told)
+    written: dict[str, Any] = {"because": because, "only_for": _listed(only_for), "notes": row.notes(_FILTER_COLUMNS)}
+    return Filter(name=name, cell=cell, row=row.where, used=False, **limits, **written)
 
 
 def _listed(names: str) -> tuple[str, ...]:

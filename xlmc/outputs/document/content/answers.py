@@ -149,10 +149,10 @@ def _texts(rows: Sequence[SummaryRow]) -> Iterator[Table]:
     for row in rows:
         if row.categories:
             head = f"{row.name} ({row.units})" if row.units else row.name
-            told, others, left = frequent_texts(row.categories)
+            frequent, others, left = frequent_texts(row.categories)
             lines: list[tuple[Content, ...]] = [
                 (text or "(empty)", cells.count(round(share.value * share.n)), Measured(share, "share", interval=True))
-                for text, share in told.items()
+                for text, share in frequent.items()
             ]
             if others:
                 lines.append((others, cells.count(round(left * row.trials)), Shown(left, "0.0%")))

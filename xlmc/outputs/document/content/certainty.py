@@ -33,8 +33,8 @@ def certainty_blocks(simulation: RunResult, names: Iterable[str]) -> Iterator[Bl
 
 
 def _rows(result: ForecastResult) -> Iterator[tuple[Content, ...]]:
-    told, others, left = frequent_texts(shares_of(result))
-    for text, share in told.items():
+    frequent, others, left = frequent_texts(shares_of(result))
+    for text, share in frequent.items():
         yield _row(text, share)
     if others:
         yield others, cells.count(round(left * result.statistics.trials)), Shown(left, "0.0%")

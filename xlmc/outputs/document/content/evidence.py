@@ -55,7 +55,7 @@ def evidence_blocks(simulation: RunResult, names: Collection[str], *, full: bool
 
     Args:
         simulation: the finished run.
-        names: of the forecasts that are told of.
+        names: of the forecasts to show.
         full: with standard deviations and ranges.
     """
     found = simulation.agreement
@@ -134,9 +134,9 @@ def _mean(simulation: RunResult, answer: Answer) -> Measured:
 
 def means_tables(simulation: RunResult, found: Agreement, names: Collection[str]) -> Iterator[Table]:
     """Yield the means of forecasts side by side, with a row for each set of items."""
-    told = [each for each in found.found.forecasts if each in names]
-    for first in range(0, len(told), _MOST):
-        shown = told[first : first + _MOST]
+    chosen = [each for each in found.found.forecasts if each in names]
+    for first in range(0, len(chosen), _MOST):
+        shown = chosen[first : first + _MOST]
         rows: dict[str, list[Answer]] = {}
         for each in found.answers:
             if each.forecast in shown:

@@ -65,5 +65,5 @@ def section(material: Material) -> Iterator[Block]:
 
 def _many(simulation: RunResult) -> str:
     """Return how many forecasts sheets and page draw, in words."""
-    told = len(simulation.detailed)
-    return "all of them" if told == len(simulation.model.forecasts) else f"the first {told} (--detailed)"
+    drawn_count = len(simulation.detailed)
+    return "all of them" if drawn_count == len(simulation.model.forecasts) else f"the first {drawn_count} (--detailed)"

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["pair_blocks", "section"]
 
 _FORECASTS: Final = 6
-"""The most forecasts; with more there are more pairs than are told of."""
+"""The most forecasts; with more there are more pairs than a table shows."""
 
 _HEADS: Final = ("First (A) and its limit a", "Second (B) and its limit b", "A > a and B > b", "A > a or B > b")
 
@@ -60,7 +60,7 @@ def _sentences(simulation: RunResult, pairs: Sequence[Pair]) -> Iterator[str]:
 
 def section(material: Material) -> Iterator[Block]:
     """Yield the pairs of the chosen forecasts."""
-    told = {*material.forecasts}
+    asked = {*material.forecasts}
     pairs = pairs_of(material.simulation) if material.simulation.weighting is None else []
-    shown = [each for each in pairs if {each.first.name, each.second.name} <= told]
+    shown = [each for each in pairs if {each.first.name, each.second.name} <= asked]
     return pair_blocks(material.simulation, shown)

@@ -32,7 +32,7 @@ def scenario_blocks(
     Args:
         found: of the workbook itself, then of each scenario; empty where none was run.
         impossible: why a scenario has no answers, by its name.
-        names: of the forecasts that are told of; None for all.
+        names: of the forecasts to show; None for all.
     """
     if not found:
         return

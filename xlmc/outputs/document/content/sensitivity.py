@@ -105,7 +105,7 @@ def sensitivity_sentences(found: Sensitivities, source: SourceBook) -> list[str]
             f"other {count_text(omitted)} have less influence."
         )
     if found.omitted_forecasts:
-        said.append(first_forecasts("Sensitivity is told of", len(found.forecasts), found.omitted_forecasts))
+        said.append(first_forecasts("Sensitivity is shown of", len(found.forecasts), found.omitted_forecasts))
     if found.medians:
         said.append(f"Held at their medians, because their cells are blank: {', '.join(found.medians)}.")
     return said
@@ -258,7 +258,7 @@ def section(material: Material) -> Iterator[Block]:
     if material.simulation.weighting is not None:
         return
     simulation = material.simulation
-    # Those that a person names are told of, wherever they stand.
+    # Those that a person names are shown, wherever they stand.
     named = None if len(material.forecasts) == len(simulation.model.forecasts) else material.forecasts
     within = named is None or set(named) <= set(simulation.detailed)
     found, fits = sensitivities(simulation, None if within else named), vocabulary_of(simulation.model.workbook).fits
@@ -272,7 +272,7 @@ def section(material: Material) -> Iterator[Block]:
         f"with the assumption. No sensitivity says whether the model {fits}."
     )
     if named is None and found.omitted_forecasts:
-        yield Paragraph(first_forecasts("Sensitivity is told of", len(shown), found.omitted_forecasts))
+        yield Paragraph(first_forecasts("Sensitivity is shown of", len(shown), found.omitted_forecasts))
     lines: list[tuple[Content, ...]] = []
     most = _MOST_BARS if len(shown) <= _FEW else _MOST_OF_MANY
     for each in shown:

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate, format_estimate, proportion
-from xlmc.outputs.document.cells import estimate, paired_format, share_format, shown_text, spread_format
+from xlmc.outputs.document.cells import _span_format, estimate, paired_format, share_format, shown_text, spread_format
 
 PAIRED = [
     (11.79946, 0.01256, "#,##0.000"),
@@ -84,6 +84,23 @@ def test_an_error_is_never_shown_as_0(value, error, expected):
 def test_differences_of_times_are_spans_that_excel_can_show(days, error, text):
     shown, _ = estimate(Estimate(days, error), form=Form(Kind.DATE, "[h]:mm"), spread=True)
     assert shown_text(shown) == text
+
+
+@pytest.mark.parametrize(
+    ("days", "error", "code"),
+    [
+        (0.0, 0.01, "[h]:mm:ss"),
+        (0.999, 0.1, "[h]:mm:ss"),
+        (1.0, 0.1, '#,##0.00" days"'),
+        (1.2, 0.1, '#,##0.00" days"'),
+        (-0.5, 0.012, '#,##0.000" days"'),
+        (40.0, 250.0, '#,##0" days"'),
+        (math.nan, 0.1, "[h]:mm:ss"),
+        (0.0, None, "[h]:mm:ss"),
+    ],
+)
+def test_a_span_below_a_day_is_in_hours(days, error, code):
+    assert _span_format(days, error) == code
 
 
 def test_a_time_before_the_first_one_is_a_number():

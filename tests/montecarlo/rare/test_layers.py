@@ -11,8 +11,11 @@ from scipy.special import ndtr
 from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
+from xlmc.excel.address import Area, Cell
+from xlmc.excel.formula import ir
 from xlmc.montecarlo.rare import learning
 from xlmc.montecarlo.rare.layered import Layered, search_space_of
+from xlmc.montecarlo.rare.layers import _meets
 from xlmc.montecarlo.rare.limit_state_function import LimitStateFunction
 
 NORMAL = {"distribution": "Normal", "mean": 0, "std_dev": 1}
@@ -155,3 +158,23 @@ def test_a_layer_that_cannot_be_solved_ends_with_a_warning(book, monkeypatch):
     run = simulated(model, 1 << 25, seed=1, until_accepted=1_000_000, rare="always")
     assert "gave up" in run.warnings[0]
     assert run.rare is None
+
+
+A1, A2, B1 = Cell("S", 1, 1), Cell("S", 2, 1), Cell("S", 1, 2)
+
+
+@pytest.mark.parametrize(
+    ("tree", "cells", "meets"),
+    [
+        (A1, {A1}, True),
+        (A1, {A2, B1}, False),
+        (ir.Binary("+", A1, B1), {B1}, True),
+        (ir.Call("SUM", (Area("S", 1, 1, 3, 1),)), {A2}, True),
+        (ir.Call("SUM", (Area("S", 1, 1, 3, 1), B1)), {B1}, True),
+        (ir.Call("SUM", (Area("S", 1, 1, 3, 1),)), {B1}, False),
+        (ir.Number(1.0), {A1}, False),
+        (A1, set(), False),
+    ],
+)
+def test_whether_a_formula_reads_one_of_some_cells(tree, cells, meets):
+    assert _meets(tree, cells) == meets

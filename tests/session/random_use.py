@@ -58,11 +58,11 @@ class Book:
     """A workbook that is changed at random.
 
     It has five assumptions of which some are correlated, three answers, two filters, two rows of evidence, a decision,
-    and a cell that is solved for.
+    and, if it `solves`, a cell that is solved for.
     """
 
-    def __init__(self, path, dice):
-        self.path, self.dice, self.names = path, dice, iter(range(1, 10**9))
+    def __init__(self, path, dice, solves):
+        self.path, self.dice, self.names, self.solves = path, dice, iter(range(1, 10**9)), solves
         self.rows = [self.row(cell) for cell in range(1, 6)]
         self.filters = [["possible", "=M!B1", 1.0, None, None], ["slow", "=M!B2", 0.0, 80.0, None]]
         self.evidence = [
@@ -113,6 +113,8 @@ class Book:
             ],
             "xlmc_settings": [["Setting", "Value"], ["Trials", 1_000]],
         }
+        if not self.solves:
+            del tables["xlmc_solve"]
         names = {each["cell"]: each["name"] for each in self.rows}
         tied = [[names[a], names[b], value] for (a, b), value in self.ties.items() if {a, b} <= names.keys()]
         if tied:
@@ -223,12 +225,12 @@ class Use:
         start: gives a `Running` server of a workbook, whose scenarios lie in `state`.
         folder: for the workbook.
         state: of the scenarios.
-        seed: of all that is random.
+        seed: of all that is random; with an odd one no cell is solved for, so that the decision moves as a number does.
     """
 
     def __init__(self, start, folder, state, seed):
         self.dice, self.start, self.state = random.Random(seed), start, state
-        self.book = Book(folder / "book.xlsx", self.dice)
+        self.book = Book(folder / "book.xlsx", self.dice, solves=seed % 2 == 0)
         self.server = start(book=self.book.path)
         self.kept, self.number, self.seq, self.done = set(), 0, 0, []
         self.clients = [self._client() for _ in range(3)]
@@ -516,7 +518,8 @@ def main():
     import tempfile
     from pathlib import Path
 
-    sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "outputs" / "live"))
+    here = Path(__file__).resolve().parent
+    sys.path[:0] = [str(here.parent / "outputs" / "live"), str(here)]
     from conftest import _servers
 
     minutes, seed = float(sys.argv[1]), int(sys.argv[2]) if len(sys.argv) > 2 else 1

@@ -346,6 +346,47 @@ def test_dates_percentages_and_money_are_told_as_their_cells_show_them(tmp_path)
 
 _EPOCH = datetime(1899, 12, 30)
 
+VAST = {
+    "a date": (book_of_dates, ("start", "low", "assumption")),
+    "a limit that is a date": (book_of_dates, ("early", "at_most", "filter")),
+    "a threshold that is a date": (book_of_dates, ("end", "threshold", "forecast")),
+    "a normal error": (book_of_readings, ("witness", "std_dev", "filter")),
+    "a lognormal error": (book_of_readings, ("marks", "percent", "filter")),
+    "an error on both sides": (book_of_readings, ("at 40 ft", "plus_minus", "filter")),
+    "a decision": (book_of_decisions, ("limit", "value", "decision")),
+}
+
+
+@pytest.mark.parametrize("value", [1e308, -1e308, 5e-324])
+@pytest.mark.parametrize(("book", "of"), VAST.values(), ids=VAST)
+def test_the_largest_numbers_are_answered(tmp_path, monkeypatch, book, of, value):
+    monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", 500)
+    session = Session(load(book(tmp_path / "case.xlsx")))
+    name, key, kind = of
+    told = [*session.receive(change(name, key, value, of=kind)).all, *session.greeting()]
+    for _ in range(8):
+        if (job := session.job()) is not None:
+            told += done(session, job)
+    assert session.adjustments
+    assert all(written(each) for each in told)
+
+
+def test_what_meets_a_fault_of_xlmc_is_taken_back(case, monkeypatch):
+    session = Session(case[1])
+    session.receive(change(FRICTION, "low", 0.71))
+    before = session.adjustments
+
+    def fails(own, adjustments):
+        if adjustments != before:
+            raise ZeroDivisionError("a fault")
+        return []
+
+    monkeypatch.setattr("xlmc.outputs.live.session.filter_rows", fails)
+    with pytest.raises(XlmcError, match="xlmc has failed, and takes this back: ZeroDivisionError: a fault"):
+        session.receive(change(FRICTION, "high", 0.8))
+    assert session.adjustments == before
+    assert session.greeting()
+
 
 @pytest.mark.parametrize("trial", [0, 1, 2, 3_000, 10**9])
 def test_a_stepped_trial_is_the_workbook_with_its_draws_typed_in(case, tmp_path, trial):

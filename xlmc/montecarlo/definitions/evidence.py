@@ -87,7 +87,7 @@ class Within:
         low = -np.inf if self.low is None else self.low
         high = np.inf if self.high is None else self.high
         outside = np.maximum(np.maximum(low - m, m - high), 0.0)
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             found = outside / (self.share * np.abs(m) + self.width)
         return np.where(outside > 0.0, found, 0.0)
 
@@ -98,7 +98,7 @@ class Within:
     def reached(self, m: Floats) -> Floats:
         """`(n,)` the chance that another reading of m would have been at most R."""
         tolerance = self.share * np.abs(m) + self.width
-        with np.errstate(divide="ignore", invalid="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             found = (self.reading - m + tolerance) / (2.0 * tolerance)
         return np.where(tolerance > 0.0, np.clip(found, 0.0, 1.0), m <= self.reading)
 
@@ -130,10 +130,11 @@ class Bell:
     def z(self, m: Floats) -> Floats:
         """`(n,)`; infinite where m has no logarithm; 0 where one-sided evidence is beyond doubt on its side."""
         if self.logarithmic:
-            with np.errstate(divide="ignore", invalid="ignore"):
+            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
                 return np.where(m > 0.0, np.log(self.reading / m) / self.sigma, np.inf)
         low, high = (None if side else 0.0 for side in self.sides)
-        z = (self.reading - m) / self.sigma
+        with np.errstate(over="ignore"):
+            z = (self.reading - m) / self.sigma
         return np.clip(z, high, low) if self.one_sided else z
 
     def log_weight(self, m: Floats) -> Floats:
@@ -141,7 +142,8 @@ class Bell:
         if self.one_sided:
             from scipy.special import log_ndtr
 
-            z = (self.reading - m) / self.sigma
+            with np.errstate(over="ignore"):
+                z = (self.reading - m) / self.sigma
             logs = log_ndtr(-z if self.sides[0] else z)
             return np.where(logs >= -0.5 * _FARTHEST**2, logs, -np.inf)
         z = self.z(m)

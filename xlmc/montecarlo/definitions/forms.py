@@ -281,7 +281,10 @@ class Form:
         """Write a date or time, to the second; a number where it is none."""
         from xlmc.excel.functions.number_format import FormatError, UnknownFormat, parse_format  # few books have dates
 
-        rounded = round(value * _SECONDS_A_DAY) / _SECONDS_A_DAY
+        seconds = value * _SECONDS_A_DAY
+        if not math.isfinite(seconds):
+            return number_text(value)
+        rounded = round(seconds) / _SECONDS_A_DAY
         for code in (self.moment_code, _DAY_AND_TIME):
             try:
                 return parse_format(code).number(rounded, self.date1904)

@@ -209,11 +209,19 @@ class Session:
         """Take a message.
 
         Raises:
-            XlmcError: it asks for what there is not.
+            XlmcError: it asks for what there is not, or it has met a fault of xlmc, and is taken back.
         """
-        if sent.kind in ("undo", "redo"):
-            return self._go(sent.kind)
         before = self._moment
+        try:
+            return self._go(sent.kind) if sent.kind in ("undo", "redo") else self._answer(sent, before)
+        except XlmcError:
+            raise
+        except Exception as error:  # a fault of xlmc's own must not end the window
+            self._go_to(before)
+            raise XlmcError(f"xlmc has failed, and takes this back: {type(error).__name__}: {error}") from error
+
+    def _answer(self, sent: PageMessage, before: Moment) -> Replies:
+        """Do what a message asks for, and return what to say; `before` is what there was."""
         changed = self._take(sent)
         dragged = (sent["of"], sent["name"], sent["key"]) if sent.kind == "set" and sent["held"] else None
         if sent.kind not in ("view", "stop", "compare"):
@@ -312,12 +320,16 @@ class Session:
         go = self._history.undo if where == "undo" else self._history.redo
         found = go(self._moment, fitting)
         if found is not None:
-            self.stored, self._dragged = dict(found.stored), False
-            if found.adjustments != self.adjustments:
-                self._change(found.adjustments)
-            self._ask(found.asked)
-            self.shown = found.shown if found.shown in self.stored or not found.shown else ""
+            self._go_to(found)
         return Replies(all=[self._state()])
+
+    def _go_to(self, moment: Moment) -> None:
+        """Be as at another moment."""
+        self.stored, self._dragged = dict(moment.stored), False
+        if moment.adjustments != self.adjustments:
+            self._change(moment.adjustments)
+        self._ask(moment.asked)
+        self.shown = moment.shown if moment.shown in self.stored or not moment.shown else ""
 
     def _set(self, sent: PageMessage) -> Replies | bool:
         of, name, key, value = sent["of"], sent["name"], sent["key"], sent["value"]

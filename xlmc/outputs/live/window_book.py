@@ -190,7 +190,7 @@ def _step_in(form: Form, step: float) -> float:
 
 
 def _step(span: float, size: float) -> float:
-    wanted = span / _STEPS if span > 0.0 else size / (5.0 * _STEPS)
+    wanted = span / _STEPS if 0.0 < span < math.inf else size / (5.0 * _STEPS)
     return float(f"1e{math.floor(math.log10(wanted) + 1e-9)}") if wanted > 0.0 else 0.01
 
 
@@ -301,13 +301,19 @@ def _law(filter_: Filter) -> Law | None:
 
 
 def _shape_of_error(law: Law) -> dict[str, Any] | None:
-    """Return how likely a quantity is by its reading alone, as `shapes_of`; None if it is bounded on one side."""
+    """Return how likely a quantity is by its reading alone, as `shapes_of`.
+
+    None if it is bounded on one side, or if its error reaches further than numbers do.
+    """
     if isinstance(law, Within):
         return None if law.low is None or law.high is None else {"low": law.low, "high": law.high, "heights": [1.0]}
     z = np.linspace(-_FARTHEST, _FARTHEST, _SHAPE_BARS + 1)
-    m = law.reading * np.exp(z * law.sigma) if law.logarithmic else law.reading + z * law.sigma
-    edges = np.linspace(m[0], m[-1], _SHAPE_BARS + 1)
-    heights = np.exp(law.log_weight(0.5 * (edges[1:] + edges[:-1])))
+    with np.errstate(all="ignore"):
+        m = law.reading * np.exp(z * law.sigma) if law.logarithmic else law.reading + z * law.sigma
+        edges = np.linspace(m[0], m[-1], _SHAPE_BARS + 1)
+        heights = np.exp(law.log_weight(0.5 * (edges[1:] + edges[:-1])))
+    if not np.isfinite([*edges, m[-1] - m[0], *heights]).all():
+        return None
     return {"low": float(m[0]), "high": float(m[-1]), "heights": [round(float(h), 3) for h in heights]}
 
 

@@ -83,8 +83,11 @@ function formText(value, decimals, form) {
   return `${value < 0 && /[1-9]/.test(text) ? "-" : ""}${form.before}${text}${form.after}`;
 }
 
-/** A date as 2026-03-01, with or without its time; a span of time as 49:15. */
+const DAYS_OF_EXCEL = 2958466; // up to the end of the year 9999
+
+/** A date as 2026-03-01, with or without its time; a span of time as 49:15; a number where Excel has no such date. */
 function momentText(value, { moment, epoch }) {
+  if (moment !== "span" && !(value >= 0 && value < DAYS_OF_EXCEL)) return shortText(value, 7);
   const seconds = Math.round(value * 86400);
   const two = (number) => String(number).padStart(2, "0");
   if (moment === "span") {

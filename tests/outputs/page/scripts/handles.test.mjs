@@ -25,6 +25,9 @@ test("a number has the decimals of its step, or more where it needs them", () =>
 test("dates are written and read as such", () => {
   assert.equal(stepText(46082, 1, DAYS), "2026-03-01");
   assert.equal(stepText(null, 1, DAYS), "");
+  for (const [value, text] of [[1e308, "1e+308"], [-1, "-1"], [2958465, "9999-12-31"], [2958466, "2958466"]]) {
+    assert.equal(stepText(value, 1, DAYS), text);
+  }
   const read = (text) => formTyped(text, null, DAYS);
   const { low, high, middle } = typedRange("2026-03-01 to 2026-04-01", read);
   assert.deepEqual([low, high, middle], [46082, 46113, null]);

@@ -24,6 +24,7 @@ __all__ = [
     "contents_now",
     "definition_changes",
     "environment_changes",
+    "is_emptied_text",
     "is_number",
     "is_rewritten_number",
     "number_changes",
@@ -176,6 +177,11 @@ def is_rewritten_number(change: Change) -> bool:
     except ValueError:
         return False
     return change.kind == "cell" and Closeness(rewritten=True).equal(new, old)
+
+
+def is_emptied_text(change: Change) -> bool:
+    """Whether a cell that held a text without a character is blank, as openpyxl and LibreOffice save it."""
+    return change.kind == "cell" and change.old == '""' and change.new is None
 
 
 def structure_changes(recorded: Record, found: Record) -> list[Change]:

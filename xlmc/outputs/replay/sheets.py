@@ -223,8 +223,18 @@ class _Pair:
     def _shown_otherwise(self, at: _RowColumn, where: Cell) -> Iterator[CellDifference]:
         """Return the difference where a number is there, and is shown with other decimals than the run's."""
         says, gives = self._formats[1].get(self._in_file(at)), self._formats[0].get(at)
-        if says is not None and gives is not None and says != gives:
+        if says is not None and gives is not None and says != gives and not self._shows_all(at, says, gives):
             yield CellDifference(where, f"shown {says}", f"shown {gives}")
+
+    def _shows_all(self, at: _RowColumn, says: NumberFormat, gives: NumberFormat) -> bool:
+        """Report whether a number is shown to its last digit, where the run leaves its decimals to the program.
+
+        A base case of 16 digits has a fixed number of decimals, and none where another program has saved 15 of them.
+        """
+        number = self._expected(at).value
+        if gives.decimals is not None or says.decimals is None or says.exponent or not is_number(number):
+            return False
+        return number == round(number, says.decimals + 2 * says.percent)
 
     @cached_property
     def _formats(self) -> tuple[Mapping[_RowColumn, NumberFormat], Mapping[_RowColumn, NumberFormat]]:

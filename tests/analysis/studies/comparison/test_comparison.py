@@ -7,13 +7,16 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from datetime import date
 from pathlib import Path
 
 import pytest
+import xlsxwriter
 
 from xlmc.analysis.studies.comparison import Verdict, compare
 from xlmc.analysis.studies.comparison.verdicts import book_names, inputs_text, verdict_text
 from xlmc.errors import SimulationError
+from xlmc.montecarlo.model.loading import load
 from xlmc.montecarlo.model.model import CompiledModel
 
 SIZE = {"trials": 20_000, "seed": 1}
@@ -268,3 +271,34 @@ def test_trials_that_errors_take_from_one_book_are_told(linear):
     (sentence,) = (text for text in verdict_text(found) if "errors" in text)
     assert sentence.startswith("In y.xlsx errors in cells take up to 5")
     assert not any("errors" in text for text in verdict_text(compare(linear(), linear(name="y.xlsx"), "1", **SIZE)))
+
+
+def test_books_whose_dates_count_from_different_days_are_refused(tmp_path):
+    """They were said to differ by 1,462 days, and the dates of the second were written four years early."""
+
+    def dated(name, date1904, code):
+        with xlsxwriter.Workbook(tmp_path / name, {"date_1904": date1904}) as made:
+            sheet, form = made.add_worksheet("S"), made.add_format({"num_format": code})
+            sheet.add_table(0, 0, 1, 3, {"name": "xlmc_assumptions", "columns": heads("Name", "Value", "Low", "High")})
+            sheet.write(1, 0, "start")
+            for column, day in enumerate([date(2024, 3, 1), date(2024, 2, 1), date(2024, 4, 1)], 1):
+                sheet.write_datetime(1, column, day, form)
+            sheet.add_table(3, 0, 4, 1, {"name": "xlmc_forecasts", "columns": heads("Name", "Value")})
+            sheet.write(4, 0, "end")
+            sheet.write_formula(4, 1, "=B2+10", form)
+        return load(tmp_path / name)
+
+    first, second = dated("first.xlsx", False, "yyyy-mm-dd"), dated("second.xlsx", True, "yyyy-mm-dd")
+    with pytest.raises(
+        SimulationError, match=r"Dates of first\.xlsx and of second\.xlsx do not count from the same day"
+    ):
+        compare(first, second, **SIZE)
+    with pytest.raises(SimulationError, match="do not count from the same day"):
+        compare(first, second, feeds={"start": "end"}, **SIZE)
+    assert only(compare(first, first, **SIZE)).judgement.verdict is Verdict.WITHIN
+    plain = dated("third.xlsx", False, "0.0"), dated("fourth.xlsx", True, "0.0")
+    assert only(compare(*plain, **SIZE)).judgement.verdict is Verdict.BEYOND  # numbers, as far as their formats say
+
+
+def heads(*names):
+    return [{"header": name} for name in names]

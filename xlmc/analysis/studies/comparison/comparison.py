@@ -29,9 +29,12 @@ from xlmc.analysis.studies.comparison.variations import with_plain_sampling
 from xlmc.analysis.studies.shown import Shown
 from xlmc.analysis.studies.steps import Steps
 from xlmc.errors import SimulationError
+from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Forecast
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.definitions.units import factor_between
 from xlmc.montecarlo.distributions.spelling import by_names, name_key
+from xlmc.montecarlo.model.cell_forms import forms_of
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import simulate
 from xlmc.montecarlo.simulation.simulation import RunResult
@@ -204,10 +207,31 @@ def compare(
             range.
     """
     first, second = with_plain_sampling(first), with_plain_sampling(second)
+    _refuse_other_dates(first, second)
     trials = trials or max(model.definitions.settings.trials for model in (first, second))
     seed = first.definitions.settings.seed if seed is None else seed
     with Steps(tell) as steps:
         return _compared(first, second, tolerance, pairs, feeds, trials, seed, engine, jobs, chance, causes, steps)
+
+
+def _refuse_other_dates(first: CompiledModel, second: CompiledModel) -> None:
+    """Refuse books with dates of which one counts from 1904: the numbers of one day are 1,462 apart.
+
+    Raises:
+        SimulationError: they are such books.
+    """
+    books = first.workbook, second.workbook
+    if books[0].date1904 == books[1].date1904:
+        return
+    for model in (first, second):
+        cells = [cell for each in (*model.forecasts, *model.live) if isinstance(cell := each.cell, Cell)]
+        dated = next(
+            (c for c, f in zip(cells, forms_of(model.workbook, cells), strict=True) if f.kind is Kind.DATE), None
+        )
+        if dated is not None:
+            message = f"dates of {first.path.name} and of {second.path.name} do not count from the same day"
+            hint = "set both to the 1900 date system, in Excel's options"
+            raise SimulationError(message, where=f"{model.path.name} {dated}", hint=hint)
 
 
 class _EndedEarly(Exception):  # noqa: N818 - it is no fault

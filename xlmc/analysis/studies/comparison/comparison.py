@@ -224,7 +224,8 @@ def _refuse_other_dates(first: CompiledModel, second: CompiledModel) -> None:
     if books[0].date1904 == books[1].date1904:
         return
     for model in (first, second):
-        cells = [cell for each in (*model.forecasts, *model.live) if isinstance(cell := each.cell, Cell)]
+        named = *(each.cell for each in model.forecasts), *(each.cell for each in model.live)
+        cells = [cell for cell in named if isinstance(cell, Cell)]
         dated = next(
             (c for c, f in zip(cells, forms_of(model.workbook, cells), strict=True) if f.kind is Kind.DATE), None
         )

@@ -335,6 +335,7 @@ def test_dates_percentages_and_money_are_told_as_their_cells_show_them(tmp_path)
         "price: Mean $48,000 → $50,000",
         "early: at most 2026-03-29 → 2026-04-18",
     ]
+    assert pair_of(session.rest, "end", "net price")["together"] == []  # a date and an amount of money have no axis
     start, discount, _ = state["assumptions"]
     assert [each["form"]["moment"] for each in (start, *start["numbers"], *state["filters"])] == ["day"] * 4
     assert (start["step"], state["filters"][0]["step"]) == (1.0, 1.0)

@@ -35,7 +35,7 @@ from xlmc.outputs.document.element import EMPTY, Html, element, join
 from xlmc.outputs.document.html_writer import blocks_html
 from xlmc.outputs.histogram import Figure, bars_of, multiples
 from xlmc.outputs.live.protocol import Message
-from xlmc.outputs.page.payload import forecast_payload, form_json
+from xlmc.outputs.page.payload import axis_of, forecast_payload, form_json
 from xlmc.outputs.page.sensitivity_sections import dependence, limits
 from xlmc.outputs.page.sheet_sections import (
     assumptions,
@@ -467,7 +467,7 @@ def _together(simulation: RunResult, names: tuple[str, str]) -> list[dict[str, A
         return []
     made = (_figure(result, None) for name, result in simulation.results.items() if name in names)
     figures = [each for each in made if each is not None]
-    if len(figures) < 2 or len({figure.answer.units for figure in figures}) > 1:
+    if len(figures) < 2 or len({axis_of(figure) for figure in figures}) > 1:
         return []
     if any(figure.answer.is_share for figure in figures):
         return []

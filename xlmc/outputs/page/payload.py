@@ -40,6 +40,7 @@ __all__ = [
     "ALL_VALUES",
     "MOST_VALUES",
     "RankTable",
+    "axis_of",
     "forecast_payload",
     "form_json",
     "most_values",
@@ -95,11 +96,17 @@ def counted_figures(figures: Sequence[Figure]) -> list[Figure]:
 
 
 def overlays_of(figures: Sequence[Figure]) -> list[list[int]]:
-    """Return the indices of the figures of each overlay: two or more in one unit."""
-    by_units: dict[str, list[int]] = {}
+    """Return the indices of the figures of each overlay: two or more in one unit, all dates, say, or all amounts."""
+    by_units: dict[tuple[object, ...], list[int]] = {}
     for index, figure in enumerate(figures):
-        by_units.setdefault(figure.answer.units, []).append(index)
+        by_units.setdefault(axis_of(figure), []).append(index)
     return [group for group in by_units.values() if len(group) > 1]
+
+
+def axis_of(figure: Figure) -> tuple[object, ...]:
+    """Return what figures have in common whose answers fit one axis: units, and how their numbers are written."""
+    form = figure.answer.form
+    return figure.answer.units, form.kind is Kind.DATE, form.factor, form.affixes
 
 
 def forecast_payload(simulation: RunResult, figure: Figure, most: int, *, fits: bool = True) -> dict[str, Any]:

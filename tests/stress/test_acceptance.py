@@ -52,7 +52,7 @@ def test_runs_of_a_strict_filter(strict):
 def test_none_accepted_says_how_many_may_be(strict):
     run = next(run for run in (simulated(strict, 1_000, seed) for seed in range(20)) if run.accepted == 0)
     assert run.acceptance.interval[1] > 5e-4
-    assert "or accept fewer than 0.38 % of the trials. " in run.warnings[0]
+    assert "or accept fewer than 0.39 % of the trials. " in run.warnings[0]
 
 
 def test_waiting_for_accepted_trials(strict):

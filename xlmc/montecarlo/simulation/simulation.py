@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field, replace
+from decimal import ROUND_CEILING, Context, Decimal
 from functools import cache, cached_property, partial
 from typing import TYPE_CHECKING, Any, Final
 
@@ -78,6 +79,11 @@ _OF_FEW = (
     "standard deviation, the skewness, the kurtosis and the coefficient of variation can then be too short: "
     "--until-accepted 1000, say, goes on until there are more"
 )
+
+
+def _rounded_up(number: float) -> str:
+    """Write an upper bound with two digits, as the table of trials does: 0.1917 is 0.2, not 0.19."""
+    return number_text(float(Context(prec=2, rounding=ROUND_CEILING).plus(Decimal(number))), 2)
 
 
 @dataclass(frozen=True, slots=True)
@@ -327,7 +333,7 @@ class RunResult:
         found = []
         if self.accepted == 0 and self.stopped.by != "search":
             most = self.acceptance.interval
-            fewer = "" if most is None else f", or accept fewer than {number_text(100.0 * most[1], 2)} % of the trials"
+            fewer = "" if most is None else f", or accept fewer than {_rounded_up(100.0 * most[1])} % of the trials"
             why = f"the filters contradict the assumptions{fewer}{self._by_itself}"
             if self.error_trials >= self.trials:
                 why = "every trial was lost to an error in a cell"

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import re
+import signal
 from dataclasses import replace
 
 import numpy as np
@@ -13,7 +14,7 @@ from xlmc.analysis.studies.methods.need import need, reach_of, worst_error
 from xlmc.analysis.studies.methods.optimised import in_step
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
 from xlmc.errors import SimulationError
-from xlmc.outputs.methods import methods_tables
+from xlmc.outputs.methods import methods_report, methods_tables
 
 REPLICATES, TRIALS = 100, 8_192
 
@@ -296,6 +297,26 @@ def test_the_interval_of_an_error_holds_it():
     draws = np.random.default_rng(2).normal(0.0, 2.0, (400, 8))
     held = [low <= 2.0 <= high for low, high in (rms_of(each).interval for each in draws)]
     assert np.mean(held) == pytest.approx(0.95, abs=0.045)
+
+
+@pytest.mark.parametrize("at", ["Taylor, first order", "runs of 128 to 131,072 trials, 1 of"])
+def test_an_interrupted_study_answers_by_the_shortest_runs(straight, at):
+    def tell(what):
+        if what.startswith(at):
+            signal.raise_signal(signal.SIGINT)
+
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        found = study(straight, reference_trials=1 << 16, trials=1 << 17, replicates=8, tell=tell)
+    finally:
+        signal.signal(signal.SIGINT, before)
+    assert found.ended.startswith("it was interrupted after ")
+    assert len(found.ladder) == 3
+    assert all(len(curve.lengths) == 3 for curve in found.curves)
+    assert "Recommended: " in "\n".join(recommendation(found))
+    assert methods_report(found, figures=False)
+    left_out = "the study was interrupted before it"
+    assert found.absent.get("Taylor, second order") == (left_out if at.startswith("Taylor") else None)
 
 
 def test_slopes():

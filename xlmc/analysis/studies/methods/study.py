@@ -70,6 +70,9 @@ each takes longer than all should.
 _LEAST_TOLD: Final = 2
 """Runs of each length, without which there is no error to tell."""
 
+_FEWEST_LENGTHS: Final = 3
+"""Run lengths, without which there is no slope to tell."""
+
 _CLOCKED: Final = 3
 """Runs of an engine of each length: only their seconds matter, because their errors are those of Monte Carlo."""
 
@@ -156,7 +159,8 @@ def study(
 ) -> Study:
     """Measure every method on a workbook.
 
-    Once each run length was run twice, a first Ctrl-C ends it with the runs made by then (`Study.ended`).
+    Once the reference was run, a first Ctrl-C ends it with what was run by then (`Study.ended`), but not before the
+    three shortest run lengths were run twice.
 
     Args:
         model: the workbook.
@@ -204,17 +208,19 @@ def _measured(
     if patience is None:
         patience = _RUNS_SECONDS if replicates is None else np.inf
     measuring = _Measuring(model, reference, ladder, most, patience, own, steps)
+    steps.can_end()
     once = measuring.once(ONCE)
     found = measuring.run_drawn(DRAWN, [each for each in ENGINE_VARIANTS if each.engine != SLOW])
     curves = tuple(curve for curve in found if curve.method in DRAWN)
     engines = tuple(curve for curve in found if curve.method not in DRAWN)
-    once = tuple(measuring.widen(curve) if curve.ends else curve for curve in once)
+    if not steps.ended:
+        once = tuple(measuring.widen(curve) if curve.ends else curve for curve in once)
     for variant in steps.each(ENGINE_VARIANTS):
         if variant.engine == SLOW:
             engines += measuring.time_slow(variant, next(curve for curve in curves if curve.method is MONTE_CARLO))
     return Study(
-        model, own, wanted, reference, unfiltered, ladder, most, once, curves, engines, measuring.absent, texts,
-        steps.why_ended,
+        model, own, wanted, reference, unfiltered, measuring.ladder, most, once, curves, engines, measuring.absent,
+        texts, steps.why_ended,
     )  # fmt: skip
 
 
@@ -286,19 +292,24 @@ def _check(seed: int, replicates: int | None, trials: int | None, reference: int
 
 
 class _Measuring:
-    """The runs of one study."""
+    """The runs of one study.
+
+    Attributes:
+        ladder: trials of the runs; fewer where the study is ended before the longer ones were run twice.
+        absent: method -> why it could not be used.
+    """
 
     def __init__(
         self,
         model: CompiledModel,
         reference: Reference,
-        ladder: Sequence[int],
+        ladder: tuple[int, ...],
         replicates: int,
         patience: float,
         seed: int,
         steps: Steps,
     ) -> None:
-        self._model, self._reference, self._ladder = model, reference, ladder
+        self._model, self._reference, self.ladder = model, reference, ladder
         self._replicates, self._patience = replicates, patience
         self._seed, self._steps = seed, steps
         self._extremes: dict[str, dict[str, Extreme]] = {}
@@ -308,11 +319,14 @@ class _Measuring:
         """Run the methods that give one answer; twice, so that the second run shows what they cost."""
         found = []
         for method in methods:
+            if self._steps.ended:
+                self.absent[method.name] = "the study was interrupted before it"
+                continue
             self._steps.begin(method.name)
-            first = self._try(method, self._ladder[-1])
+            first = self._try(method, self.ladder[-1])
             if first is None:
                 continue
-            again = method.run(self._model, self._ladder[-1], self._seed) if first.seconds < _PATIENCE else first
+            again = method.run(self._model, self.ladder[-1], self._seed) if first.seconds < _PATIENCE else first
             result = replace(again, seconds=min(first.seconds, again.seconds))
             runs = runs_of(result.evaluations, [result], self._reference)
             ranges = {name: (a.least, a.most) for name, a in result.answers.items() if np.isfinite(a.least)}
@@ -340,18 +354,22 @@ class _Measuring:
 
         They take turns, run length after run length, so that other work of the machine slows all of them alike.
         """
-        firsts = {method.key: self._try(method, self._ladder[0]) for method in (*methods, *engines)}
+        firsts = {method.key: self._try(method, self.ladder[0]) for method in (*methods, *engines)}
         able = [method for method in (*methods, *engines) if firsts[method.key] is not None]
-        results: dict[tuple[str, int], list[MethodResult]] = {(m.key, b): [] for m in able for b in self._ladder}
+        results: dict[tuple[str, int], list[MethodResult]] = {(m.key, b): [] for m in able for b in self.ladder}
         self._steps.expect(self._replicates + 1)  # and the slow engine
-        for replicate in self._steps.each(range(self._replicates)):
+        for replicate in range(self._replicates):
+            needed = replicate < _LEAST_TOLD
+            if self._steps.ended and not needed:
+                break
             self._steps.begin(
-                f"runs of {count_text(self._ladder[0])} to {count_text(self._ladder[-1])} trials, "
+                f"runs of {count_text(self.ladder[0])} to {count_text(self.ladder[-1])} trials, "
                 f"{replicate + 1} of {self._replicates}"
             )
-            if replicate >= _LEAST_TOLD:
-                self._steps.can_end()
-            for number, budget in enumerate(self._ladder):
+            for number, budget in enumerate(self.ladder):
+                if needed and number >= _FEWEST_LENGTHS and self._steps.ended:
+                    self.ladder = self.ladder[:number]
+                    break
                 seed = self._seed + 1 + number * _APART + replicate
                 for method in able:
                     known = results[method.key, budget]
@@ -390,8 +408,8 @@ class _Measuring:
     def _curve(
         self, method: Method, first: MethodResult | None, results: Mapping[tuple[str, int], list[MethodResult]]
     ) -> Curve:
-        lengths = in_order([runs_of(budget, results[method.key, budget], self._reference) for budget in self._ladder])
-        remarks = results[method.key, self._ladder[-1]][-1].remarks
+        lengths = in_order([runs_of(budget, results[method.key, budget], self._reference) for budget in self.ladder])
+        remarks = results[method.key, self.ladder[-1]][-1].remarks
         return Curve(method, lengths, _setup(first, lengths[0]), remarks, {})
 
     def _engine_curve(
@@ -408,7 +426,7 @@ class _Measuring:
             lengths.append(replace(runs, seconds=min(timed), usual=median(timed)))
         ordered = in_order(lengths)
         apart = max(
-            self._apart(results[engine.key, budget], results[MONTE_CARLO.key, budget]) for budget in self._ladder
+            self._apart(results[engine.key, budget], results[MONTE_CARLO.key, budget]) for budget in self.ladder
         )
         remark = f"answers at the same trials differ from those of numpy by {number_text(apart, 1)} SD at the most"
         return Curve(engine, ordered, _setup(first, ordered[0]), (remark,), {}, apart)

@@ -30,7 +30,7 @@ class Vocabulary:
         drawing: what the workbook draws.
         checks: what the checks are called.
         misfits: why a model may not apply, in parentheses after a space; may be empty.
-        balances: whether it matters which of yes and no is more probable.
+        balances: whether it matters what is more probable than not, as in court.
     """
 
     model_error: str

@@ -43,6 +43,15 @@ def test_another_range_is_called_by_its_share():
     ]
 
 
+@pytest.mark.parametrize("central", [0.4, 0.51, 0.8])
+def test_books_that_are_not_about_crashes_call_every_range_by_its_share(central):
+    (said,) = sentences(GRID, units="EUR", central=central, category="")
+    assert said.startswith(f"speed: the {100 * central:.0f} % range (")
+    assert " lies between " in said
+    (bound,) = sentences(GRID, units="EUR", central=central, category="", role=Role.LOWER)
+    assert ", with a probability of at least " in bound
+
+
 @pytest.mark.parametrize("n", [5, 12, 40, 300, 1000, 20_000])
 @pytest.mark.parametrize("report_to", [None, 0.01, 1.0, 5.0])
 @pytest.mark.parametrize("factor", [1.0, 0.731])  # proportional in every trial, and so both are stated or neither

@@ -126,9 +126,10 @@ def _main(result: ForecastResult, part: str, balances: bool) -> Statement | None
     if found is None:
         return None
     if definition.role.is_bound:
-        text = _bound_text(found, definition.central, units, trials)
+        text = _bound_text(found, definition.central, units, trials, balances)
         return Statement(name, "bound", f"{name}: {text}{part}")
-    return Statement(name, "range", f"{name}: {_range_text(found, definition.central, units, trials)}{part}")
+    text = _range_text(found, definition.central, units, trials, balances)
+    return Statement(name, "range", f"{name}: {text}{part}")
 
 
 def _texts_text(categories: Mapping[str, Estimate]) -> str:
@@ -218,8 +219,10 @@ def _part_text(result: ForecastResult) -> str:
     return f"; counted in the {count_text(numbers)} of {every} in which it {what}"
 
 
-def _range_text(found: RoundedRange, nominal: float, units: str, trials: int) -> str:
-    """`more probable than not (52.1 % ± 0.8 %) between 22.0 and 24.2 mph`, where that is so."""
+def _range_text(found: RoundedRange, nominal: float, units: str, trials: int, balances: bool) -> str:
+    """`more probable than not (52.1 % ± 0.8 %) between 22.0 and 24.2 mph`, where that is so and what matters; else
+    `the 80 % range (80.1 % ± 0.3 %) lies between 20.0 and 80.0 mph`.
+    """
     share, between = found.share, found.words(units, "between", "and")
     if found.low == found.high:
         if share.value == 1.0:
@@ -227,7 +230,7 @@ def _range_text(found: RoundedRange, nominal: float, units: str, trials: int) ->
         between = f"equal to {found.low_text}{units}"
     elif share.value == 1.0:
         return f"{between} in {percent_text(share)}"
-    if nominal > LIKELIER:
+    if nominal > LIKELIER or not balances:
         lies = f"is {found.low_text}{units}" if found.low == found.high else f"lies {between}"
         return f"the {number_text(100.0 * nominal)} % range ({percent_text(share)}) {lies}"
     if surely_above(share, EVEN):
@@ -237,12 +240,12 @@ def _range_text(found: RoundedRange, nominal: float, units: str, trials: int) ->
     return f"{percent_text(share)} {between}"
 
 
-def _bound_text(found: RoundedRange, nominal: float, units: str, trials: int) -> str:
+def _bound_text(found: RoundedRange, nominal: float, units: str, trials: int, balances: bool) -> str:
     """`at least 22 mph, more probable than not (51.3 % ± 0.4 %)`."""
     share, side = found.share, found.words(units)
     if share.value == 1.0:
         return f"{side} in {_all(trials)}"
-    if surely_above(share, EVEN) and nominal <= LIKELIER:
+    if balances and surely_above(share, EVEN) and nominal <= LIKELIER:
         return f"{side}, more probable than not ({percent_text(share)})"
     return f"{side}, with a probability of at least {percent_text(share)}"
 

@@ -96,6 +96,7 @@ def printed(tmp_path_factory):
         found = CliRunner().invoke(xlmc, ["--quiet", *words, *outputs], env={"COLUMNS": "200"})
         assert found.exit_code in (0, 1), found.output
         texts = {ending: text_of(Path(f"{stem}.{ending}")) for ending in ENDINGS[:-1]}
+        texts["tables"] = text_of(Path(f"{stem}.html"), ("script", "style", "svg", "nav"))
         document = json.loads(Path(files[0]).read_text(encoding="utf-8"))
         return document, texts | {"terminal": found.output}, Path(f"{stem}.xlsx")
 
@@ -105,27 +106,27 @@ def printed(tmp_path_factory):
 class _Words(HTMLParser):
     """The words of a page that a reader sees."""
 
-    def __init__(self):
+    def __init__(self, unseen):
         super().__init__()
-        self.words, self._hidden = [], 0
+        self.words, self._hidden, self._unseen = [], 0, unseen
 
     def handle_starttag(self, tag, attrs):
-        self._hidden += tag in ("script", "style")
+        self._hidden += tag in self._unseen
 
     def handle_endtag(self, tag):
-        self._hidden -= tag in ("script", "style")
+        self._hidden -= tag in self._unseen
 
     def handle_data(self, data):
         if not self._hidden:
             self.words.append(data)
 
 
-def text_of(path):
-    """All that a file says."""
+def text_of(path, unseen=("script", "style")):
+    """All that a file says; of a page without what stands in some elements."""
     if path.suffix == ".pdf":
         return subprocess.run(["pdftotext", path, "-"], capture_output=True, check=True, encoding="utf-8").stdout
     if path.suffix == ".html":
-        words = _Words()
+        words = _Words(unseen)
         words.feed(path.read_text(encoding="utf-8"))
         return " ".join(words.words)
     document = docx.Document(str(path))
@@ -208,6 +209,51 @@ def test_a_number_with_its_error_is_an_estimate_of_the_json(printed, command, ou
             lost.append(words)
     assert not lost
     assert command in WITHOUT_ERRORS or texts[output].count("±") > 5
+
+
+DATE = re.compile(r"\d{4}-\d\d-\d\d(?: \d\d:\d\d)?|\d+:\d\d(?::\d\d)?")
+ALONE = re.compile(r"(?<![\w.,:/!-])(\d[\d,]*(?:\.\d+)?(?:e[+-]\d+)?)(?![\w.]*[A-Za-z_/:!])(?!\.\d)")
+"""A number that stands alone, and is no part of a word, a version or a cell."""
+OF_THE_RECORD = ("Every number is in full", "What the numbers depend on", "How to repeat")
+WORDS = {"99.9"}
+"""Numbers of sentences: "more than 99.9 % confidence"."""
+
+
+def strings_in(value):
+    """Yield all texts of a document, the keys among them."""
+    if isinstance(value, str):
+        yield value
+    elif isinstance(value, dict | list):
+        for each in [*value, *value.values()] if isinstance(value, dict) else value:
+            yield from strings_in(each)
+
+
+def without_certainty(text):
+    """Leave out the page's table of ranges, whose ends are rounded: the trials in these are counted for it alone."""
+    before, found, after = text.partition("The share of the accepted trials below")
+    return before + after[max(after.find("Forecasts two at a time"), 0) :] if found else text
+
+
+@pytest.mark.parametrize("output", ["terminal", "tables", "docx"])
+@pytest.mark.parametrize("command", list(COMMANDS))
+def test_every_number_is_one_of_the_json(printed, command, output):
+    """Also one without an error: a base case, a threshold, a percentile's end, a count, a tolerance."""
+    document, texts, _ = printed(command)
+    said = [read(each[1], None)[0] for text in strings_in(document) for each in ALONE.finditer(text)]
+    found = np.array([*numbers_in(document), *derived(document)])
+    known = np.sort(np.abs(np.concatenate([np.outer(found, FACTORS).ravel(), said])))
+    text = without_certainty(re.sub(r"\s+", " ", texts[output]))
+    for words in OF_THE_RECORD:
+        text = text.partition(words)[0]
+    text = WITH_ERROR.sub(" ", DATE.sub(" ", text))
+    lost = []
+    for each in ALONE.finditer(text):
+        value, half = read(each[1], None)
+        half *= 2.0 if re.search(r"at (most|least) $", text[: each.start()]) else 1.0  # bounds are rounded outwards
+        small = value <= 100.0 and "." not in each[1]  # "the 51 % range", "3 runs"
+        if not (small or each[1] in WORDS or is_close(value, known, half + 1e-9 * value)):
+            lost.append(text[max(0, each.start() - 50) : each.end() + 20])
+    assert lost == []
 
 
 NOISE = re.compile(

@@ -12,10 +12,12 @@ __all__ = ["acceptance_json", "difference_json", "estimate_json"]
 
 
 def estimate_json(estimate: Estimate) -> dict[str, float | None]:
-    """Value and standard error."""
+    """Return the value and its standard error, and the ends of its interval where it has one."""
     from xlmc.montecarlo.statistics.estimate import finite
 
-    return {"value": finite(estimate.value), "error": finite(estimate.error)}
+    ends = zip(("low", "high"), estimate.interval or (), strict=False)
+    numbers = {"value": estimate.value, "error": estimate.error, **dict(ends)}
+    return {name: finite(number) for name, number in numbers.items()}
 
 
 def difference_json(found: Difference) -> dict[str, object]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from functools import partial
 from math import isfinite, isnan
 from typing import TYPE_CHECKING
@@ -174,14 +174,19 @@ def _tolerance(found: Screening, name: str) -> str:
     from xlmc.analysis.studies.comparison.verdicts import is_chance, points, tolerance_text
 
     value, stated = found.tolerances[name]
-    result = found.run[name]
-    costs = (*found.single, *found.groups, *found.sets, *found.filters)
-    limits = costs[0].forecasts[name].tolerances(value, found.chance) if costs else {}
+    result, limits = found.run[name], _limits(found, name)
     chances = [f"{number} {points(limit)}" for number, limit in limits.items() if is_chance(number)]
-    if isnan(value) or (costs and costs[0].forecasts[name].shares):
+    if isnan(value) or (limits and len(chances) == len(limits)):
         return ", ".join(chances)
     text = f"{tolerance_text(value, result.form)} {result.definition.units}".rstrip()
     return ", and ".join([text + ("" if stated else " (a tenth of the SD)"), *chances])
+
+
+def _limits(found: Screening, name: str) -> Mapping[str, float]:
+    """Return the tolerance of each number of a forecast; nothing where nothing was left out."""
+    costs = (*found.single, *found.groups, *found.sets, *found.filters)
+    compared = next((cost.forecasts[name] for cost in costs if name in cost.forecasts), None)
+    return {} if compared is None else compared.tolerances(found.tolerances[name][0], found.chance)
 
 
 def _names(costs: Sequence[Cost]) -> list[str]:
@@ -305,7 +310,8 @@ def _as_json(found: Screening) -> dict[str, object]:
         "seed": run.settings.seed,
         "acceptance": estimate_json(run.acceptance),
         "tolerances": {
-            name: {"value": finite(value), "stated": stated} for name, (value, stated) in found.tolerances.items()
+            name: {"value": finite(value), "stated": stated, "of_each": _limits_json(found, name)}
+            for name, (value, stated) in found.tolerances.items()
         },
         "chance_tolerance": found.chance,
         "acceptance_tolerance": found.acceptance_tolerance,
@@ -336,6 +342,12 @@ def _as_json(found: Screening) -> dict[str, object]:
         },
         "runs": found.runs,
     }
+
+
+def _limits_json(found: Screening, name: str) -> dict[str, float | None]:
+    from xlmc.montecarlo.statistics.estimate import finite
+
+    return {number: finite(limit) for number, limit in _limits(found, name).items()}
 
 
 def _entry(cost: Cost, found: Screening) -> dict[str, object]:

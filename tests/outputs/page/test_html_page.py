@@ -10,7 +10,6 @@ from fewer_sheets import leave_out_fits
 from simulated import simulated
 
 from xlmc.analysis.results.record import make_record
-from xlmc.analysis.results.statements.pairs import pairs_of
 from xlmc.api import Simulation
 from xlmc.errors import WorkbookError
 from xlmc.montecarlo.columns import column_store, on_disk
@@ -78,29 +77,6 @@ def test_no_line_ends_between_a_number_and_its_percent_sign_or_error(text_of, ru
     assert not re.search(r"\d %|± \d", page)
 
 
-def test_statistics_are_the_numbers_of_the_sheet(run, book, page_of):
-    (section,) = page_of(run).all("section", id="statistics")
-    assert sorted(section.numbers) == numbers_of(book["Statistics"])
-
-
-def test_answers_trials_and_filters_are_the_numbers_of_the_sheet(run, book, page_of):
-    page = page_of(run)
-    answers, filters = (page.all("section", id=name)[0] for name in ("answer", "filters"))
-    of_sheet = numbers_of(book["Results"])
-    left = list(of_sheet)
-    for number in (*answers.numbers, *filters.numbers):
-        left.remove(number)
-    # The page says in a sentence how many trials the answers rest on.
-    assert sorted(left) == [float(each.statistics.trials) for each in run.results.values()]
-
-
-def test_answers_are_those_of_the_python_object(run, page_of):
-    (section,) = page_of(run).all("section", id="answer")
-    for result in run.results.values():
-        for estimate in (result.mean, result.standard_deviation, *result.central()):
-            assert estimate.value in section.numbers
-
-
 def test_assumptions_are_the_numbers_of_the_sheet(run, book, page_of):
     (section,) = page_of(run).all("section", id="assumptions")
     of_sheet = numbers_of(book["Assumptions"])
@@ -108,36 +84,6 @@ def test_assumptions_are_the_numbers_of_the_sheet(run, book, page_of):
         assert number in of_sheet
     assert "frozen" in section.text
     assert "not needed" in section.text
-
-
-def test_pairs_are_the_numbers_of_the_sheet(run, book, page_of):
-    """But for the errors of shares of none or all trials, of which the page says "at least 99.9 %"."""
-    (section,) = page_of(run).all("section", id="pairs")
-    left = numbers_of(book["Pairs"])
-    for number in section.numbers:
-        left.remove(number)
-    shares = [each for pair in pairs_of(run) for each in (pair.both_above, pair.either_above, pair.first_greater)]
-    assert left == [each.error for each in shares if each is not None and each.value in (0.0, 1.0)]
-    assert "100 %, at least " in section.text
-
-
-@pytest.mark.parametrize(("section", "sheet"), [("sensitivity", "Sensitivity"), ("limits", "Filter limits")])
-def test_tables_are_those_of_the_sheets(run, book, page_of, section, sheet):
-    (found,) = page_of(run).all("section", id=section)
-    assert any(found.numbers)  # a change of 0 ± 0 is one number on the page
-    assert sorted(filter(None, found.numbers)) == [*filter(None, numbers_of(book[sheet]))]
-
-
-def test_certainties_and_sentences_are_those_of_the_sheet(run, book, page_of):
-    page = page_of(run)
-    of_sheet = numbers_of(book["Certainty"])
-    (certainty,) = page.all("section", id="certainty")
-    assert certainty.numbers
-    assert set(certainty.numbers) <= set(of_sheet)
-    sentences = [node.text for node in page.all("ul", class_="statements")[0].all("li")]
-    told = {cell.value for cell in book["Certainty"]["A"]}
-    assert sentences
-    assert set(sentences) <= told
 
 
 def test_the_record_is_the_whole_record(run, page_of, monkeypatch):

@@ -54,34 +54,10 @@ def test_formats_show_the_digits_the_errors_support(run, book):
     assert [sheet.cell(row, column).number_format for column in (4, 5, 12)] == ["#,##0.000"] * 3
 
 
-def test_acceptance_has_wilsons_interval(run, book, row_of):
-    found = run.acceptance
-    assert row_of(book["Results"], "Accepted") == [
-        "Accepted",
-        None,
-        run.accepted,
-        found.value,
-        found.error,
-        *found.interval,
-    ]
-    assert row_of(book["Results"], "Run")[2] == 5000
-
-
 def test_each_filter_says_what_it_asks_and_why(book, row_of):
     sheet = book["Results"]
     assert row_of(sheet, "1. root") == ["1. root", "S!C1", None, "at most 1.2", None, "seen"]
     assert row_of(sheet, "2. narrow")[3:] == ["above 1.1 and below 2.5", None, "=measured"]
-
-
-def test_each_filter_says_what_it_rejected_alone_and_with_others(run, book, rows_of):
-    rows = [row for row in rows_of(book["Results"]) if row and row[0] == "1. root"]
-    tally = run.tally
-    _, counts = rows
-    assert counts[1:3] == [sum(tally.errors[0].values()), tally.rejected[0]]
-    assert counts[3] == tally.rejected[0] / 5000
-    assert counts[5:7] == [tally.only[0], tally.only[0] / 5000]
-    assert counts[8:] == [None, tally.together[0, 1]]
-    assert tally.errors[0]["#NUM!"] > 0
 
 
 def test_errors_are_listed_by_cell_and_code(run, book, row_of):

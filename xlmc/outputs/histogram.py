@@ -34,6 +34,7 @@ from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.number_text import count_text, counted_text, number_text, percent
 from xlmc.montecarlo.statistics.sample import Sample, Values
+from xlmc.outputs.document.cells import fraction, percent_format
 from xlmc.outputs.summary import (
     SummaryRow,
     answer_text,
@@ -160,8 +161,8 @@ class Histogram:
         if self.form.kind is Kind.DATE:
             return self.form.moment_code
         if self.form.kind is Kind.PERCENT:
-            return f"0{_fraction(max(self.decimals - 2, 0))}%"
-        return f"0{_fraction(self.decimals)}"
+            return percent_format(self.decimals - 2)
+        return f"0{fraction(self.decimals)}"
 
     def _text(self, edge: float, decimals: int) -> str:
         return self.form.tick(edge, decimals) if self._short else number_text(edge, 4)
@@ -260,10 +261,10 @@ def _named_bars(
     )
 
 
-def short_name(name: str) -> str:
-    """Return the text of a category, as long as an axis has room for."""
+def short_name(name: str, longest: int = _LONGEST_LABEL) -> str:
+    """Return a name, or the text of a category, as long as there is room for."""
     name = name or "(empty)"
-    return name if len(name) <= _LONGEST_LABEL else f"{name[: _LONGEST_LABEL - 1]}…"
+    return name if len(name) <= longest else f"{name[: longest - 1]}…"
 
 
 def _shown(x: Floats) -> tuple[float, float]:
@@ -384,10 +385,6 @@ def _decimals(width: float) -> int:
     """Decimals that write a round width in full: 0.25 -> 2, 10 -> 0."""
     mantissa, _, exponent = f"{width:.2e}".partition("e")
     return max(len(mantissa.rstrip("0").partition(".")[2]) - int(exponent), 0)
-
-
-def _fraction(decimals: int) -> str:
-    return "." + "0" * decimals if decimals else ""
 
 
 _LONGEST_NAME = 90

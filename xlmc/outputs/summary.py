@@ -52,6 +52,7 @@ __all__ = [
     "shares_of",
     "summarise",
     "summary_text",
+    "with_units",
 ]
 
 _ERROR_SENTENCE = (
@@ -236,6 +237,11 @@ def beside_mean(value: float, row: SummaryRow) -> str:
     if decimals is None or (len(exact) <= _LONG and exact_digits(row.form.factor * value)):
         return exact
     return min(exact, row.form.number(value, decimals), key=len)
+
+
+def with_units(name: str, units: str) -> str:
+    """Return a name, with its units behind it where it has some: `Speed (mph)`."""
+    return f"{name} ({units})" if units else name
 
 
 def range_heading(rows: Sequence[SummaryRow]) -> str:

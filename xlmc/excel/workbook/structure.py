@@ -6,6 +6,7 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import chain, count
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import Notice, WorkbookError
@@ -23,6 +24,7 @@ __all__ = [
     "SheetEntry",
     "Structure",
     "area_of",
+    "free_sheet_name",
     "iteration_of",
     "read_structure",
     "read_table",
@@ -73,6 +75,16 @@ class Structure:
     def target(self, kind: str) -> str | None:
         """Return the part that the workbook's first relationship of that kind points to."""
         return next((found.target for found in self.relationships.values() if found.kind == kind), None)
+
+
+def free_sheet_name(parts: Mapping[str, bytes], wanted: str) -> str:
+    """Choose a name that no sheet has, so that formulas on a new sheet mean the workbook's own: `xlmc`, `xlmc 2`, ….
+
+    Raises:
+        WorkbookError: there is no workbook part, or it is damaged.
+    """
+    taken = {entry.name.casefold() for entry in read_structure(parts).sheets}
+    return next(name for name in chain([wanted], (f"{wanted} {n}" for n in count(2))) if name.casefold() not in taken)
 
 
 def read_structure(parts: Mapping[str, bytes]) -> Structure:

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass
-from itertools import chain, count
 from pathlib import Path
 from typing import Final
 
@@ -20,7 +19,7 @@ from xlmc.excel.workbook.inject import inject
 from xlmc.excel.workbook.injection.host import remove_result_sheets
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
-from xlmc.excel.workbook.structure import read_structure
+from xlmc.excel.workbook.structure import free_sheet_name
 from xlmc.excel.workbook.target import Target
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.excel.workbook.writer import write_workbook
@@ -78,7 +77,7 @@ def convert(model: CompiledModel, path: Path, *, overwrite: bool = False) -> Con
         raise WorkbookError("all that the workbook defines is in xlmc's tables already", where=model.path, hint=hint)
     parts = inject(
         remove_result_sheets(workbook.parts),
-        built_sheet(tables, left, _free_name(workbook), _formats(workbook, tables)),
+        built_sheet(tables, left, free_sheet_name(workbook.parts, SHEET), _formats(workbook, tables)),
         replace=False,
         marked=False,
     )
@@ -93,12 +92,6 @@ def _formats(workbook: Workbook, tables: tuple[NewTable, ...]) -> dict[Cell, str
     calls = [row.call for table in tables for row in table.rows if row.call is not None]
     forms = forms_of(workbook, [host_of(call) for call in calls])
     return {call: form.code for call, form in zip(calls, forms, strict=True) if form.kind is not Kind.NUMBER}
-
-
-def _free_name(workbook: Workbook) -> str:
-    """Choose a name that no sheet has, so that formulas on the new sheet mean the workbook's own sheets."""
-    taken = {entry.name.casefold() for entry in read_structure(workbook.parts).sheets}
-    return next(name for name in chain([SHEET], (f"{SHEET} {n}" for n in count(2))) if name not in taken)
 
 
 def _left(workbook: Workbook, definitions: Definitions, tables: tuple[NewTable, ...]) -> Iterator[Left]:

@@ -179,7 +179,7 @@ def _exact_format(value: float | None, form: Form) -> str:
     if form.factor == 1.0 and not any(form.affixes):
         return "General" if value is None or not math.isfinite(value) else number_format(value)
     digits = exact_text(form.factor * (value or 0.0)).partition(".")[2]
-    return _in_form("#,##0" + _fraction(len(digits)), form)
+    return _in_form("#,##0" + fraction(len(digits)), form)
 
 
 def _in_form(digits: str, form: Form) -> str:
@@ -209,13 +209,13 @@ def _span_format(days: float, error: float | None) -> str:
     decimals = decimals_of(error or days)
     if not math.isfinite(days) or 0.0 <= days < 1.0 or decimals is None:
         return "[h]:mm:ss"  # of a span below 0 Excel shows ####
-    return f'#,##0{_fraction(max(decimals, 0))}" days"'
+    return f'#,##0{fraction(max(decimals, 0))}" days"'
 
 
 def share_format(estimate: Estimate) -> str:
     """`paired_format` for a share, in percent."""
     decimals = _paired_decimals(estimate) if (estimate.error or 0.0) > _ROUNDING else None
-    return "0" + _fraction(max((4 if decimals is None else decimals) - 2, 0)) + "%"
+    return percent_format((4 if decimals is None else decimals) - 2)
 
 
 def spread_format(spread: float, form: Form = PLAIN) -> str:
@@ -231,7 +231,7 @@ def number_format(value: float) -> str:
     if float(value).is_integer():
         return _COUNT if abs(value) < _LARGEST else "General"
     if 0.0 < abs(value) < _SMALLEST:
-        return f"0{_fraction(len(f'{value:.12g}'.partition('e')[0].lstrip('-').partition('.')[2]))}E+00"
+        return f"0{fraction(len(f'{value:.12g}'.partition('e')[0].lstrip('-').partition('.')[2]))}E+00"
     return "General" if len(repr(value)) <= _DIGITS + 1 else _format(value, None)
 
 
@@ -248,13 +248,19 @@ def _format(value: float, decimals: int | None) -> str:
         decimals = _DIGITS - 1 - two_digit_exponent(value)
     size = max(abs(value), 10.0**-decimals)
     if not _SMALLEST <= size < _LARGEST:
-        return "0" + _fraction(min(max(decimals + two_digit_exponent(size), 0), 3)) + "E+00"
+        return "0" + fraction(min(max(decimals + two_digit_exponent(size), 0), 3)) + "E+00"
     room = _ROOM - len(f"{value:,.0f}") - 1
-    return "#,##0" + _fraction(max(min(decimals, room), 0))
+    return "#,##0" + fraction(max(min(decimals, room), 0))
 
 
-def _fraction(decimals: int) -> str:
-    return "." + "0" * decimals if decimals else ""
+def fraction(decimals: int) -> str:
+    """Return the part of a number format behind the digits before the point."""
+    return "." + "0" * decimals if decimals > 0 else ""
+
+
+def percent_format(decimals: int) -> str:
+    """Return the format of percentages with so many decimals, none where that is below 0."""
+    return f"0{fraction(decimals)}%"
 
 
 def _usable(number: float) -> bool:

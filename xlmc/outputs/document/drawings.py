@@ -17,7 +17,7 @@ from xlmc.montecarlo.loop.forecast_result import ForecastResult
 from xlmc.montecarlo.number_text import fixed_text, number_text, percent, two_digit_exponent
 from xlmc.outputs.document.colours import COLOURS, DARK, GRID, INK, LIGHT
 from xlmc.outputs.document.parts import HALF, Bar, Bars, Chart, Drawing, Line, Lines, Shape
-from xlmc.outputs.histogram import Figure, Histogram
+from xlmc.outputs.histogram import Figure, Histogram, short_name
 
 __all__ = [
     "FONT",
@@ -145,7 +145,7 @@ def _bars(chart: Chart, shown: Bars) -> Drawing:
 
 
 def _bar(bar: Bar, top: float, row: float, left: float, across: Scale) -> list[str]:
-    found = [text_at(left - 6, top + 12, _short(bar.name), anchor="end")]
+    found = [text_at(left - 6, top + 12, short_name(bar.name, _LONGEST), anchor="end")]
     for first, last, look in bar.pieces:
         if math.isfinite(first) and math.isfinite(last):
             start, stop = sorted((across(first), across(last)))
@@ -179,7 +179,10 @@ def _lines(chart: Chart, shown: Lines) -> Drawing:
     if shown.cloud is not None:
         found += [_dot(x(a), y(b)) for a, b, _ in _finite(shown.cloud)]
         at = top + 14 + 18 * len(shown.lines)
-        found += [_dot(right + 23, at), text_at(right + 40, at + 4, _short(shown.cloud.name, _BESIDE), anchor="start")]
+        found += [
+            _dot(right + 23, at),
+            text_at(right + 40, at + 4, short_name(shown.cloud.name, _BESIDE), anchor="start"),
+        ]
     for index, line in enumerate(shown.lines):
         colour, at = COLOURS[index % len(COLOURS)], top + 14 + 18 * index
         width = 1.4 if index else 2.2
@@ -190,7 +193,7 @@ def _lines(chart: Chart, shown: Lines) -> Drawing:
             found.append(f'<circle cx="{x(a):.2f}" cy="{y(b):.2f}" r="2.5" fill="{colour}"/>')
         found += [
             line_to(right + 12, at, right + 34, at, colour, width),
-            text_at(right + 40, at + 4, _short(line.name, _BESIDE), anchor="start"),
+            text_at(right + 40, at + 4, short_name(line.name, _BESIDE), anchor="start"),
         ]
     found.append(text_at((left + right) / 2, bottom + 34, chart.across))
     found.append(text_at(14, (top + bottom) / 2, shown.upwards, turned=True))
@@ -247,10 +250,6 @@ def end_text(end: float, span: float) -> str:
 
 def _near(value: float, low: float, high: float) -> float:
     return min(max(value, low), high) if math.isfinite(value) else low
-
-
-def _short(name: str, longest: int = _LONGEST) -> str:
-    return name if len(name) <= longest else f"{name[: longest - 1]}…"
 
 
 def _grid(scale: Scale, left: float, right: float, unit: str) -> list[str]:

@@ -14,7 +14,7 @@ from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import AT_LEAST, BLANK, NOISE, Shown
 from xlmc.outputs.summary import share_text
 
-__all__ = ["HEADS", "Measured"]
+__all__ = ["HEADS", "Measured", "counted_share"]
 
 HEADS: Final = ("±", "95 % from", "to")
 """Headings of the columns of a sheet behind that of a number."""
@@ -97,3 +97,8 @@ class Measured:
         ends = cells.interval(found, form=self.form, spread=spread) if self.interval else []
         error = "second error" if self.look == "second number" else "error"
         return [*cells.estimate(found, self.look, error, like=self.like, form=self.form, spread=spread), *ends]
+
+
+def counted_share(found: Estimate | None) -> Measured:
+    """Return a share of trials; a sheet shows the ends of its interval, too."""
+    return Measured(found, "share", interval=True)

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from itertools import chain, count
 from pathlib import Path
 
 from xlmc.engine.engines import ENGINES
@@ -18,7 +17,7 @@ from xlmc.excel.workbook.injection.cell_edit import Content, Typed, with_content
 from xlmc.excel.workbook.injection.host import result_sheets
 from xlmc.excel.workbook.package_check import checked_bytes
 from xlmc.excel.workbook.reader import read_workbook
-from xlmc.excel.workbook.structure import read_structure, table_part
+from xlmc.excel.workbook.structure import free_sheet_name, table_part
 from xlmc.excel.workbook.workbook import Workbook
 from xlmc.montecarlo.definitions.definitions_reader import read_definitions
 from xlmc.montecarlo.definitions.problems import Findings
@@ -86,7 +85,9 @@ def prepared(
 def with_tables(book: Workbook, rows: Mapping[str, Sequence[NewRow]], title: str) -> bytes:
     """Return the file of a workbook without tables with a sheet of these."""
     kinds = [*HEADINGS]
-    parts = inject(book.parts, tables_sheet(rows, kinds, _free_name(book), title), replace=False, marked=False)
+    parts = inject(
+        book.parts, tables_sheet(rows, kinds, free_sheet_name(book.parts, SHEET), title), replace=False, marked=False
+    )
     return checked_bytes(parts, book.parts)
 
 
@@ -135,7 +136,7 @@ def _with_rows(
     wanted = [kind for kind in missing if kind in _KINDS and rows[kind]] or ([] if any(tables.values()) else missing)
     name = ""
     if wanted:
-        name = _free_name(book)
+        name = free_sheet_name(book.parts, SHEET)
         kinds = missing if not any(tables.values()) else wanted
         parts = inject(
             parts, tables_sheet(rows, kinds, name, "What is uncertain, and what is asked"), replace=False, marked=False
@@ -201,8 +202,3 @@ def _is_blank(book: Workbook, area: Area, row: int) -> bool:
 def _is_free(book: Workbook, area: Area, row: int) -> bool:
     cells = [Cell(area.sheet, row, column) for column in range(area.left, area.right + 1)]
     return _is_blank(book, area, row) and not any(cell in other.area for other in book.tables for cell in cells)
-
-
-def _free_name(book: Workbook) -> str:
-    taken = {entry.name.casefold() for entry in read_structure(book.parts).sheets}
-    return next(name for name in chain([SHEET], (f"{SHEET} {n}" for n in count(2))) if name not in taken)

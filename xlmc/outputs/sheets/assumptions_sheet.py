@@ -30,6 +30,7 @@ from xlmc.outputs.filter_effect import DRAWN, filter_effect_of, shapes_of
 from xlmc.outputs.sheets.curves_sheet import SHARE
 from xlmc.outputs.sheets.styles import straight
 from xlmc.outputs.sheets.xlsx_writer import row_cells, write_blocks
+from xlmc.outputs.summary import with_units
 
 if TYPE_CHECKING:
     from xlsxwriter.chart import Chart
@@ -146,10 +147,9 @@ def _write_assumption(page: Page, simulation: RunResult, assumption: Assumption)
     """Write the lines of an assumption."""
     before, accepted, change = _statistics(simulation, assumption)
     starts = [0, *range(_NAMED - 1, _NAMED + len(before))]
-    name = f"{assumption.name} ({assumption.units})" if assumption.units else assumption.name
     form = simulation.model.input_forms.get(assumption.name, PLAIN)
     base = Shown(cells.NONE) if assumption.base is None else cells.exact(assumption.base, form=form)
-    page.line([Shown(name, look="name"), base, *before], starts)
+    page.line([Shown(with_units(assumption.name, assumption.units), look="name"), base, *before], starts)
     words = Shown(distribution_text(assumption), look="second")
     page.line([words, Shown(str(assumption.cell), look="second"), *accepted], starts)
     page.line([Shown(assumption.source or cells.NONE), *change], [0, *range(_NAMED, _NAMED + len(change))])

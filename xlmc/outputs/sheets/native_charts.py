@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.number_text import two_digit_exponent
-from xlmc.outputs.document.cells import Shown, spread_format
+from xlmc.outputs.document.cells import Shown, percent_format, spread_format
 from xlmc.outputs.document.colours import COLOURS, DARK, GRID, INK, LIGHT
 from xlmc.outputs.document.parts import Bars, Chart, Line, Lines
 from xlmc.outputs.sheets.styles import AXIS, FONT, Reference, axis_format, bounds, no_reference, straight
@@ -182,8 +182,7 @@ def _axis_number(form: Form, reach: Sequence[float]) -> str:
         return axis_format("General")
     if form.factor == 1.0:
         return axis_format(spread_format(span, form))
-    decimals = max(1 - two_digit_exponent(form.factor * span), 0)
-    return axis_format(f"0{'.' * (decimals > 0)}{'0' * decimals}%")
+    return axis_format(percent_format(1 - two_digit_exponent(form.factor * span)))
 
 
 def titled(made: Any, title: str) -> Any:

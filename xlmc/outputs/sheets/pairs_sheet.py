@@ -19,6 +19,7 @@ from xlmc.outputs.sheets.curves_sheet import Curves
 from xlmc.outputs.sheets.native_charts import SeriesAt, native_chart
 from xlmc.outputs.sheets.styles import Reference
 from xlmc.outputs.sheets.xlsx_writer import write_blocks
+from xlmc.outputs.summary import with_units
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -108,7 +109,7 @@ def _points(
 ) -> _Points:
     """Return a forecast's values in these trials: those on the sheet Trials, or else a table of their own."""
     values = simulation.forecasts[forecast.name][known]
-    axis = f"{forecast.name} ({forecast.units})" if forecast.units else forecast.name
+    axis = with_units(forecast.name, forecast.units)
     if known[-1] < min(known.size, trials.shown):
         index = simulation.model.forecasts.index(forecast)
         return _Points(axis, trials.heading(index), trials.column(index, known.size), values.tolist())

@@ -38,6 +38,7 @@ from xlmc.outputs.sheets.sensitivity_charts import (
     spider_chart,
 )
 from xlmc.outputs.sheets.xlsx_writer import write_blocks
+from xlmc.outputs.summary import with_units
 
 if TYPE_CHECKING:
     from xlsxwriter.chart import Chart as ExcelChart
@@ -115,7 +116,7 @@ def _printed_sentence(forecasts: int) -> str:
 
 
 def _write_heading(page: Page, forecast: ForecastSensitivity) -> None:
-    page.heading(f"{forecast.forecast} ({forecast.units})" if forecast.units else forecast.forecast)
+    page.heading(with_units(forecast.forecast, forecast.units))
     if not _is_drawn(forecast):
         page.wide("No assumption is drawn: there is nothing that it could depend on.", "paragraph", _LAST)
 

@@ -15,6 +15,7 @@ from xlmc.montecarlo.simulation.simulation import weight_heading
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.sheets.styles import Reference
+from xlmc.outputs.summary import with_units
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.simulation.simulation import RunResult
@@ -104,16 +105,17 @@ def _columns(simulation: RunResult, shown: int) -> list[tuple[Shown, NDArray[np.
         return heading, values[:shown].copy()
 
     live, forecasts = simulation.model.live, simulation.model.forecasts
-    inputs = [column(_heading(a.name, a.units, "header assumption"), simulation.inputs[a.name]) for a in live]
-    outputs = [column(_heading(f.name, f.units, "header forecast"), simulation.forecasts[f.name]) for f in forecasts]
+    inputs = [
+        column(Shown(with_units(a.name, a.units), look="header assumption"), simulation.inputs[a.name]) for a in live
+    ]
+    outputs = [
+        column(Shown(with_units(f.name, f.units), look="header forecast"), simulation.forecasts[f.name])
+        for f in forecasts
+    ]
     weighting = simulation.weighting
     heading = Shown(weight_heading([*simulation.inputs, *simulation.forecasts]), look="header")
     weights = [] if weighting is None else [column(heading, weighting.weights)]
     return inputs + outputs + weights
-
-
-def _heading(name: str, units: str, look: str) -> Shown:
-    return Shown(f"{name} ({units})" if units else name, look=look)
 
 
 def _write_values(page: Page, simulation: RunResult, columns: list[NDArray[np.float64]], inputs: int) -> None:

@@ -15,7 +15,7 @@ from xlmc.montecarlo.number_text import percent
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE, Shown
 from xlmc.outputs.document.material import also_named
-from xlmc.outputs.document.measured import Measured
+from xlmc.outputs.document.measured import Measured, counted_share
 from xlmc.outputs.document.parts import Block, Bullets, Content, Paragraph, Table
 from xlmc.outputs.summary import (
     SummaryRow,
@@ -27,6 +27,7 @@ from xlmc.outputs.summary import (
     question,
     range_heading,
     summarise,
+    with_units,
 )
 
 if TYPE_CHECKING:
@@ -148,10 +149,10 @@ def _texts(rows: Sequence[SummaryRow]) -> Iterator[Table]:
     """Yield how often each text is the answer, for each forecast whose answers are texts."""
     for row in rows:
         if row.categories:
-            head = f"{row.name} ({row.units})" if row.units else row.name
+            head = with_units(row.name, row.units)
             frequent, others, left = frequent_texts(row.categories)
             lines: list[tuple[Content, ...]] = [
-                (text or "(empty)", cells.count(round(share.value * share.n)), Measured(share, "share", interval=True))
+                (text or "(empty)", cells.count(round(share.value * share.n)), counted_share(share))
                 for text, share in frequent.items()
             ]
             if others:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from xlmc.analysis.results.statements.sentences import certainties
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
-from xlmc.outputs.document.measured import Measured
+from xlmc.outputs.document.measured import counted_share
 from xlmc.outputs.document.parts import Block, Content, Paragraph, Table
 from xlmc.outputs.summary import frequent_texts, shares_of
 
@@ -43,7 +43,7 @@ def _rows(result: ForecastResult) -> Iterator[tuple[Content, ...]]:
 
 
 def _row(words: str, share: Estimate) -> tuple[Content, ...]:
-    return words or "(empty)", cells.count(round(share.value * share.n)), Measured(share, "share", interval=True)
+    return words or "(empty)", cells.count(round(share.value * share.n)), counted_share(share)
 
 
 def section(material: Material) -> Iterator[Block]:

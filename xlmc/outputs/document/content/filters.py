@@ -10,10 +10,10 @@ from xlmc.analysis.results.statements.in_words import limits_text
 from xlmc.analysis.results.statements.run_in_words import REJECTED_SENTENCE, discards_of
 from xlmc.montecarlo.loop.stopping.stopped import ALL_TRIALS
 from xlmc.montecarlo.number_text import count_text, counted_text
-from xlmc.montecarlo.statistics import Estimate, proportion
+from xlmc.montecarlo.statistics import proportion
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import NONE
-from xlmc.outputs.document.measured import Measured
+from xlmc.outputs.document.measured import Measured, counted_share
 from xlmc.outputs.document.parts import Block, Content, Heading, Paragraph, Table
 from xlmc.outputs.summary import share_text
 
@@ -31,20 +31,16 @@ def count_blocks(simulation: RunResult) -> Iterator[Block]:
     lost = proportion(min(simulation.error_trials, total), total)
     rows: list[tuple[Content, ...]] = []
     if rare is not None:
-        rows.append(("Evaluated in all", cells.count(rare.evaluations), _share(None)))
-    rows.append(("Run" if rare is None else "Drawn before the search", cells.count(total), _share(None)))
+        rows.append(("Evaluated in all", cells.count(rare.evaluations), counted_share(None)))
+    rows.append(("Run" if rare is None else "Drawn before the search", cells.count(total), counted_share(None)))
     accepted = "Accepted" if rare is None or not rare.at_least else "Accepted, at least"
-    rows.append((accepted, cells.count(simulation.accepted), _share(simulation.acceptance)))
+    rows.append((accepted, cells.count(simulation.accepted), counted_share(simulation.acceptance)))
     if weighting is not None:
-        rows.append(("Effective", cells.count(round(weighting.effective)), _share(None)))
-    rows.append(("Lost to errors in cells", cells.count(simulation.error_trials), _share(lost)))
+        rows.append(("Effective", cells.count(round(weighting.effective)), counted_share(None)))
+    rows.append(("Lost to errors in cells", cells.count(simulation.error_trials), counted_share(lost)))
     yield Table("", ("", "Trials", "Share"), tuple(rows), caption="Trials.", spans=(2, 1, 1))
     if simulation.stopped != ALL_TRIALS:
         yield Paragraph(f"The run ended when {simulation.stopped.sentence}.", "small")
-
-
-def _share(found: Estimate | None) -> Measured:
-    return Measured(found, "share", interval=True)
 
 
 def filter_blocks(simulation: RunResult, *, full: bool) -> Iterator[Block]:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Final
 from xlmc.analysis.results.statements.pairs import PAIRS, Pair, pairs_of
 from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document.cells import NONE
-from xlmc.outputs.document.measured import Measured
+from xlmc.outputs.document.measured import Measured, counted_share
 from xlmc.outputs.document.parts import Block, Content, Paragraph, Table
 
 if TYPE_CHECKING:
@@ -34,7 +34,7 @@ def pair_blocks(simulation: RunResult, pairs: Sequence[Pair]) -> Iterator[Block]
 def _row(pair: Pair) -> tuple[Content, ...]:
     return (
         *pair.said,
-        Measured(pair.both_above, "share", interval=True),
+        counted_share(pair.both_above),
         Measured(pair.either_above, "share"),
         Measured(pair.first_greater, "share", nothing=NONE),
         Measured(pair.correlation, interval=True),

@@ -10,9 +10,9 @@ from xlmc.montecarlo.definitions.stating import NOT_ROUNDED, Kind
 from xlmc.montecarlo.number_text import number_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import BLANK, Shown
-from xlmc.outputs.document.measured import Measured
+from xlmc.outputs.document.measured import Measured, counted_share
 from xlmc.outputs.document.parts import Block, Content, Heading, Paragraph, Table
-from xlmc.outputs.summary import error_sentence
+from xlmc.outputs.summary import error_sentence, with_units
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.forecast_result import ForecastResult
@@ -52,12 +52,12 @@ def statistics_tables(results: Sequence[ForecastResult]) -> Iterator[Table]:
         labels = dict.fromkeys(label for rows in found for label in rows)
         if labels:
             lines = ((label, *(rows.get(label, BLANK) for rows in found)) for label in labels)
-            yield Table("", (head, *map(_with_units, results)), tuple(lines), over="Forecast")
-
-
-def _with_units(result: ForecastResult) -> str:
-    units = result.definition.units
-    return f"{result.definition.name} ({units})" if units else result.definition.name
+            yield Table(
+                "",
+                (head, *(with_units(each.definition.name, each.definition.units) for each in results)),
+                tuple(lines),
+                over="Forecast",
+            )
 
 
 def _statistics(result: ForecastResult) -> Mapping[str, Content]:
@@ -67,9 +67,9 @@ def _statistics(result: ForecastResult) -> Mapping[str, Content]:
     if result.sample.w is not None:
         rows["Effective trials"] = cells.count(round(result.sample.effective))
     if result.yes is not None:
-        return rows | {"Yes": _share(result.yes)}
+        return rows | {"Yes": counted_share(result.yes)}
     if result.kind is Kind.CATEGORY:
-        return rows | {f"“{text}”": _share(share) for text, share in [*result.categories.items()][:_MOST_TEXTS]}
+        return rows | {f"“{text}”": counted_share(share) for text, share in [*result.categories.items()][:_MOST_TEXTS]}
     statistics = {
         "Mean": found.mean,
         "Median": found.median,
@@ -108,7 +108,7 @@ def _percentiles(result: ForecastResult) -> Mapping[str, Content]:
     rows |= {"Central range from": _percentile(result, low), "Central range to": _percentile(result, high)}
     if found.probability_above is not None:
         rows["Threshold"] = cells.exact(definition.threshold, result.form)
-        rows["Above threshold"] = _share(found.probability_above)
+        rows["Above threshold"] = counted_share(found.probability_above)
     return rows
 
 
@@ -116,14 +116,9 @@ def _percentile(result: ForecastResult, found: Estimate) -> Measured:
     return Measured(found, form=result.form, interval=True, like=result.statistics.mean)
 
 
-def _share(found: Estimate) -> Measured:
-    return Measured(found, "share", interval=True)
-
-
 def _percent_format(share: float) -> str:
     """Percent with the decimals that the share has: `0%` for 0.51, `0.000%` for 0.99999."""
-    decimals = f"{100.0 * share:.10f}".rstrip("0").partition(".")[2]
-    return f"0{'.' * bool(decimals)}{'0' * len(decimals)}%"
+    return cells.percent_format(len(f"{100.0 * share:.10f}".rstrip("0").partition(".")[2]))
 
 
 def section(material: Material) -> Iterator[Block]:

@@ -26,10 +26,12 @@ __all__ = [
     "exact_text",
     "fixed_text",
     "format_estimate",
+    "fraction",
     "in_signs",
     "is_far",
     "number_text",
     "percent",
+    "percent_format",
     "signs",
     "styled_text",
     "two_digit_exponent",
@@ -212,3 +214,13 @@ def format_estimate(value: float, error: float | None, decimals: int | None = No
 def two_digit_exponent(number: float) -> int:
     """Return the power of ten of a number rounded to two digits: 0.00996 -> -2."""
     return int(f"{number:.1e}".partition("e")[2])
+
+
+def fraction(decimals: int) -> str:
+    """Return the part of a number format behind the digits before the point."""
+    return "." + "0" * decimals if decimals > 0 else ""
+
+
+def percent_format(decimals: int) -> str:
+    """Return the format of percentages with so many decimals, none where that is below 0."""
+    return f"0{fraction(decimals)}%"

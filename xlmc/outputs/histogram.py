@@ -32,9 +32,8 @@ from numpy.typing import NDArray
 from xlmc.montecarlo.columns import parts, release
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
-from xlmc.montecarlo.number_text import count_text, counted_text, number_text, percent
+from xlmc.montecarlo.number_text import count_text, counted_text, fraction, number_text, percent, percent_format
 from xlmc.montecarlo.statistics.sample import Sample, Values
-from xlmc.outputs.document.cells import fraction, percent_format
 from xlmc.outputs.summary import (
     SummaryRow,
     answer_text,

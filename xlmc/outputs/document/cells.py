@@ -19,7 +19,9 @@ from xlmc.montecarlo.number_text import (
     decimals_of,
     exact_text,
     fixed_text,
+    fraction,
     number_text,
+    percent_format,
     styled_text,
     two_digit_exponent,
 )
@@ -251,16 +253,6 @@ def _format(value: float, decimals: int | None) -> str:
         return "0" + fraction(min(max(decimals + two_digit_exponent(size), 0), 3)) + "E+00"
     room = _ROOM - len(f"{value:,.0f}") - 1
     return "#,##0" + fraction(max(min(decimals, room), 0))
-
-
-def fraction(decimals: int) -> str:
-    """Return the part of a number format behind the digits before the point."""
-    return "." + "0" * decimals if decimals > 0 else ""
-
-
-def percent_format(decimals: int) -> str:
-    """Return the format of percentages with so many decimals, none where that is below 0."""
-    return f"0{fraction(decimals)}%"
 
 
 def _usable(number: float) -> bool:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
-from xlmc.montecarlo.number_text import two_digit_exponent
-from xlmc.outputs.document.cells import Shown, percent_format, spread_format
+from xlmc.montecarlo.number_text import percent_format, two_digit_exponent
+from xlmc.outputs.document.cells import Shown, spread_format
 from xlmc.outputs.document.colours import COLOURS, DARK, GRID, INK, LIGHT
 from xlmc.outputs.document.parts import Bars, Chart, Line, Lines
 from xlmc.outputs.sheets.styles import AXIS, FONT, Reference, axis_format, bounds, no_reference, straight

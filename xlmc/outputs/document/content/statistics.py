@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.stating import NOT_ROUNDED, Kind
-from xlmc.montecarlo.number_text import number_text
+from xlmc.montecarlo.number_text import number_text, percent_format
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import BLANK, Shown
 from xlmc.outputs.document.measured import Measured, counted_share
@@ -118,7 +118,7 @@ def _percentile(result: ForecastResult, found: Estimate) -> Measured:
 
 def _percent_format(share: float) -> str:
     """Percent with the decimals that the share has: `0%` for 0.51, `0.000%` for 0.99999."""
-    return cells.percent_format(len(f"{100.0 * share:.10f}".rstrip("0").partition(".")[2]))
+    return percent_format(len(f"{100.0 * share:.10f}".rstrip("0").partition(".")[2]))
 
 
 def section(material: Material) -> Iterator[Block]:

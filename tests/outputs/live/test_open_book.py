@@ -134,6 +134,19 @@ def test_a_number_that_was_set_just_before_the_end_is_kept(running, book, monkey
     assert unkept == Adjustments().having("assumption", name, number["key"], number["value"] * 1.01)
 
 
+def test_a_number_is_kept_when_its_window_is_closed(running, book, monkeypatch):
+    monkeypatch.setattr("xlmc.outputs.live.open_book._KEPT_AFTER", 600.0)
+    server = running(book=book)
+    with server.window(server.library.only) as window:
+        name, number = first_number(window.next("state"))
+        window.say("set", **change(name, number["key"], number["value"] * 1.01).fields)
+        window.next("state", lambda message: message["changes"])
+    end = time.monotonic() + 60
+    while not server.library.keeper.scenarios(book)[1]:
+        assert time.monotonic() < end
+        time.sleep(0.05)
+
+
 def test_numbers_are_kept_once_none_was_set_for_a_moment(running, book):
     server = running(book=book)
     with server.window(server.library.only) as window:

@@ -161,8 +161,9 @@ class OpenBook:
         self._windows.discard(window)
         if window.holds and self.session is not None:
             self._send([self.session.let_go()])
-            self._keep()
             self._wake.set()
+        if self._keeping is not None or window.holds:
+            self._keep()
         self._look()
 
     def _look(self) -> None:

@@ -16,14 +16,14 @@ _WHERE: ContextVar[re.Pattern[str] | None] = ContextVar("spaces at which no line
 
 @contextmanager
 def in_units(units: Iterable[str]) -> Iterator[None]:
-    r"""Keep numbers and these units, and numbers and percent signs, in one line until the end of the block.
+    r"""Keep numbers in one line with these units, percent signs and signs of money until the end of the block.
 
     >>> with in_units(["mph"]):
-    ...     unbroken("51 % lie below 34.5 ± 0.3 mph").split(" ")
-    ['51\xa0%', 'lie', 'below', '34.5', '±\xa00.3\xa0mph']
+    ...     unbroken("51 % lie below 34.5 ± 0.3 mph or 20 €").split(" ")
+    ['51\xa0%', 'lie', 'below', '34.5', '±\xa00.3\xa0mph', 'or', '20\xa0€']
     """
     known = "|".join(map(re.escape, sorted({each.strip() for each in units} - {""}, key=len, reverse=True)))
-    behind = rf"(?<=[0-9]) (?=(?:%{f'|{known}' if known else ''})(?!\w))"
+    behind = rf"(?<=[0-9]) (?=(?:[%€£$]{f'|{known}' if known else ''})(?!\w))"
     token = _WHERE.set(re.compile(rf"{behind}|(?<=±) (?=[0-9])"))
     try:
         yield

@@ -42,7 +42,7 @@ GUIDE = (
             "this driver.",
             "Where the vehicle was no faster than the speed in question, that speed would not have helped: the same "
             "driver has then not avoided it. See how often it was above the limit.",
-            "Yes and no (1 and 0): the mean is the probability. So is Above threshold, with its interval.",
+            "Yes and no (1 and 0): the mean is the probability of a yes.",
         ),
     ),
     NO_BRAKING,

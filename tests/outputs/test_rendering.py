@@ -330,7 +330,7 @@ def test_a_report_for_word_shows_all_its_texts(printed, drawn):
     if not printed["report"].exists():
         pytest.skip("LibreOffice Writer is not installed (apt-get install libreoffice-writer-nogui)")
     pages = subprocess.run(
-        ["pdftotext", str(printed["report"]), "-"], check=True, capture_output=True, text=True
+        ["pdftotext", "-raw", str(printed["report"]), "-"], check=True, capture_output=True, text=True
     ).stdout
     text = re.sub(r"book\.xlsx,seed1Page\d+of\d+|Case2026-17", "", squeezed(pages))
     texts = list(texts_of(build(drawn, Wanted(OF_REPORT))))

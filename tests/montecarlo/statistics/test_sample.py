@@ -136,3 +136,48 @@ def test_the_first_value_that_a_share_does_not_exceed(values, p, expected, weigh
 def test_it_counts_weights():
     sample = Sample.of([10, 20, 30], [1, 2, 5])
     assert [sample.reaching(p) for p in (0.1, 0.125, 0.126, 0.375, 0.376)] == [10, 10, 20, 20, 30]
+
+
+@pytest.mark.parametrize(
+    ("values", "sure", "at_most"),
+    [
+        ([0.0, 1.0], True, True),
+        ([1.0, 0.0, 1.0], True, True),
+        ([1.0, 1.0], True, True),
+        ([0.0, 0.5], False, False),
+        ([0.0, 0.5, 1.0], False, False),
+        ([0.5, 0.5], False, False),
+        ([-1.0, 0.0], False, False),
+        ([1.0, 2.0], False, False),
+        ([1.0], False, True),
+        ([0.0], False, True),
+        ([0.5], False, False),
+        ([], False, False),
+    ],
+)
+def test_which_values_are_yes_and_no(values, sure, at_most):
+    """From one trial alone nobody knows it, and of no trial there is nothing to say."""
+    sample = Sample.of(values)
+    assert (sample.yes_no, bool(sample.yes_no_at_most)) == (sure, at_most)
+
+
+@pytest.mark.parametrize(
+    ("values", "whole"),
+    [
+        ([1.0, 2.0], True),
+        ([1.0, 2.5], False),
+        ([2.0, 2.0], False),
+        ([2.0], False),
+        ([0.0, 2.0**53 - 1], True),
+        ([0.0, 2.0**53], False),
+        ([-(2.0**53), 0.0], False),
+    ],
+)
+def test_which_values_are_whole(values, whole):
+    assert Sample.of(values).whole is whole
+
+
+def test_values_that_no_draw_decides_are_yes_and_no_without_doubt():
+    still = Sample.of([1.0, 1.0], still=True)
+    assert (still.yes_no, bool(still.yes_no_at_most)) == (False, True)
+    assert not Sample.of([1.0, 1.0], two_valued=False).yes_no

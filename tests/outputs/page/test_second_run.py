@@ -43,6 +43,7 @@ def test_both_answers_and_their_differences(runs, section):
         ):
             expected += [one.value, other.value, other.value - one.value]
     assert answers.numbers == expected
+    assert "%" not in "".join(cell.text for cell in answers.all("td", class_="number"))
     mean = first["Nissan delta-V"].mean, second["Nissan delta-V"].mean
     error = math.hypot(mean[0].error, mean[1].error)
     assert f" ± {error:.2g}" in answers.text

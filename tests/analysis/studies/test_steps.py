@@ -158,7 +158,6 @@ def test_methods_that_are_interrupted_tell_of_the_runs_made(book):
         told.append(what)
         if "3 of 9" in what:
             signal.raise_signal(signal.SIGINT)
-        if "4 of 9" in what:
             signal.raise_signal(signal.SIGINT)
 
     sizes = {"reference_trials": 4_096, "trials": 1_024, "seed": 1}

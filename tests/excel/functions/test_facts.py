@@ -37,7 +37,7 @@ ROWS = {row.name: row for row in REGISTRY.values()}
 MADE = {"shown", "snap to zero", *(row.name for row in (*SO_FAR.values(), POSITION, CELL_AT))}
 """Rows that no formula calls by name."""
 
-OURS = {*REGISTRY, *CHOICES, *REFERENCE_FUNCTIONS, *LAMBDAS, *WRITTEN_OUT, "LET", "LAMBDA"}
+OURS = {*REGISTRY, *CHOICES, *REFERENCE_FUNCTIONS, *LAMBDAS, *WRITTEN_OUT, "LET", "LAMBDA", "RANDARRAY"}
 NAMES = {name for name in OURS if name.isupper()}
 
 _QUOTED = re.compile(r"(?=[\"']([^\"' \n]+)([\"' ]))")
@@ -50,6 +50,10 @@ LISTS = {
         "montecarlo/definitions/in_cells/random_functions.py",
         "INVERSES",
     ): "others of RAND() are computed from its draw",
+    (
+        "montecarlo/definitions/in_cells/random_functions.py",
+        "_MAKING_ARRAYS",
+    ): "any other function is asked for its rows and columns",
     ("engine/graph/circles.py", "_HIDING"): "any other function shows that a cell it reads is not there",
     ("engine/graph/circles.py", "_is_searched"): "what PICKING has",
     ("engine/graph/picked_ranges.py", "PICKING"): "any other function reads all cells of its ranges",

@@ -124,7 +124,8 @@ class _Words(HTMLParser):
 def text_of(path, unseen=("script", "style")):
     """All that a file says; of a page without what stands in some elements."""
     if path.suffix == ".pdf":
-        return subprocess.run(["pdftotext", "-raw", path, "-"], capture_output=True, check=True, encoding="utf-8").stdout
+        command = ["pdftotext", "-raw", path, "-"]
+        return subprocess.run(command, capture_output=True, check=True, encoding="utf-8").stdout
     if path.suffix == ".html":
         words = _Words(unseen)
         words.feed(path.read_text(encoding="utf-8"))

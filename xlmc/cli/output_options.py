@@ -379,7 +379,8 @@ class Outputs(NamedTuple):
             return self
         found, reason = free_target(self.default, self.name)
         if reason is not None:
-            say(f"warning: {self.default}: {capitalised(reason)}; it stays as it is, and results go to {found}.", err=True)
+            why = f"{self.default}: {capitalised(reason)}"
+            say(f"warning: {why}; it stays as it is, and results go to {found}.", err=True)
         return self._replace(default=found)
 
     def write(self, run: RunResult) -> tuple[bool, list[str]]:

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from xlmc.montecarlo.definitions.in_cells.theory import Distribution, theoretical
+from xlmc.errors import FormulaError
+from xlmc.montecarlo.definitions.in_cells.theory import THEORETICAL, Distribution, theoretical
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.montecarlo.sampling.draws import Draw
 
@@ -51,3 +52,73 @@ def test_numbers_of_single_values_are_sums(whole, values, chance):
         expected |= {"RiskTheoMax": values[-1] + shift, "RiskTheoRange": values[-1] - values[0]}
     for function, number in expected.items():
         assert theoretical(function, of, 0.0) == pytest.approx(number, rel=1e-10, abs=1e-10), function
+
+
+NORMAL = stats.norm(10.0, 2.0)
+
+OF_THE_NORMAL = [
+    ("RiskTheoMean", 0.0, 10.0),
+    ("RiskTheoStdDev", 0.0, 2.0),
+    ("RiskTheoVariance", 0.0, 4.0),
+    ("RiskTheoSkewness", 0.0, 0.0),
+    ("RiskTheoKurtosis", 0.0, 3.0),
+    ("RiskTheoMeanAbsDev", 0.0, 2.0 * np.sqrt(2.0 / np.pi)),
+    ("RiskTheoCoeffOfVariation", 0.0, 0.2),
+    ("RiskTheoPercentile", 0.9, NORMAL.ppf(0.9)),
+    ("RiskTheoPtoX", 0.9, NORMAL.ppf(0.9)),
+    ("RiskTheoPercentileD", 0.9, NORMAL.isf(0.9)),
+    ("RiskTheoPtoXD", 0.9, NORMAL.isf(0.9)),
+    ("RiskTheoQtoX", 0.9, NORMAL.isf(0.9)),
+    ("RiskTheoTarget", 12.5, NORMAL.cdf(12.5)),
+    ("RiskTheoXtoP", 12.5, NORMAL.cdf(12.5)),
+    ("RiskTheoTargetD", 12.5, NORMAL.sf(12.5)),
+    ("RiskTheoXtoPD", 12.5, NORMAL.sf(12.5)),
+    ("RiskTheoXtoQ", 12.5, NORMAL.sf(12.5)),
+]
+
+
+@pytest.mark.parametrize(("function", "number", "expected"), OF_THE_NORMAL)
+def test_numbers_of_a_normal_distribution(function, number, expected):
+    of = Distribution(Draw.of("x", FAMILIES["Normal"], {"mean": 10.0, "std_dev": 2.0}).distribution, 0.0)
+    assert theoretical(function, of, number) == pytest.approx(expected, rel=1e-9, abs=1e-9)
+
+
+@pytest.mark.parametrize("function", ["RiskTheoMin", "RiskTheoMax", "RiskTheoRange"])
+def test_ends_that_are_infinite_are_refused(function):
+    of = Distribution(Draw.of("x", FAMILIES["Normal"], {"mean": 10.0, "std_dev": 2.0}).distribution, 0.0)
+    with pytest.raises(FormulaError, match=f"{function}: this number of the distribution is infinite"):
+        theoretical(function, of, 0.0)
+
+
+@pytest.mark.parametrize(
+    ("function", "number", "expected"),
+    [
+        ("RiskTheoMin", 0.0, 3.0),
+        ("RiskTheoMax", 0.0, 8.0),
+        ("RiskTheoRange", 0.0, 5.0),
+        ("RiskTheoPtoX", 0.0, 3.0),
+        ("RiskTheoPtoX", 0.2, 4.0),
+        ("RiskTheoPtoX", 1.0, 8.0),
+        ("RiskTheoPtoXD", 0.0, 8.0),
+        ("RiskTheoPtoXD", 1.0, 3.0),
+    ],
+)
+def test_probabilities_0_and_1_are_the_ends(function, number, expected):
+    of = Distribution(Draw.of("x", FAMILIES["Uniform"], {"low": 1.0, "high": 6.0}).distribution, 2.0)
+    assert theoretical(function, of, number) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("number", [-0.01, 1.01])
+@pytest.mark.parametrize("function", ["RiskTheoPtoX", "RiskTheoPtoXD", "RiskTheoQtoX", "RiskTheoPercentile"])
+def test_a_probability_is_from_0_to_1(function, number):
+    of = Distribution(Draw.of("x", FAMILIES["Uniform"], {"low": 1.0, "high": 6.0}).distribution, 2.0)
+    with pytest.raises(FormulaError, match="a probability must be from 0 to 1"):
+        theoretical(function, of, number)
+
+
+def test_every_function_has_a_number_here():
+    assert set(THEORETICAL) == {function for function, _, _ in OF_THE_NORMAL} | {
+        "RiskTheoMin",
+        "RiskTheoMax",
+        "RiskTheoRange",
+    }

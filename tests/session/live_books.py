@@ -12,6 +12,7 @@ from committed_books import EXAMPLES
 from openpyxl.utils import range_boundaries
 from openpyxl.worksheet.table import Table
 from websockets.sync.client import connect
+from workbook_files import add_tables
 
 from xlmc.excel.workbook.package import read_parts
 from xlmc.excel.workbook.writer import package_bytes
@@ -154,14 +155,7 @@ def book_of_readings(path, readings=READINGS, trials=4_000):
         ],
         "xlmc_settings": [["Setting", "Value"], ["Trials", trials]],
     }
-    top = 1
-    for name, lines in tables.items():
-        for row, line in enumerate(lines, start=top):
-            for column, value in enumerate(line, start=1):
-                sheet.cell(row, column, value)
-        bottom = top + len(lines) - 1
-        sheet.add_table(Table(displayName=name, ref=f"A{top}:{chr(64 + len(lines[0]))}{bottom}"))
-        top = bottom + 2
+    add_tables(sheet, tables)
     book.save(path)
     return path
 
@@ -200,14 +194,7 @@ def book_of_decisions(path, trials=2_000):
         ],
         "xlmc_settings": [["Setting", "Value"], ["Trials", trials]],
     }
-    top = 1
-    for name, lines in tables.items():
-        for row, line in enumerate(lines, start=top):
-            for column, value in enumerate(line, start=1):
-                sheet.cell(row, column, value)
-        bottom = top + len(lines) - 1
-        sheet.add_table(Table(displayName=name, ref=f"A{top}:{chr(64 + len(lines[0]))}{bottom}"))
-        top = bottom + 2
+    add_tables(sheet, tables)
     book.save(path)
     return path
 
@@ -235,14 +222,7 @@ def book_with_decisions(path, *, high=1.5, listed=False, more=()):
             *([["road", "=M!C1", None, None, None, "dry; wet"]] if listed else []),
         ],
     }
-    top = 1
-    for name, lines in tables.items():
-        for row, line in enumerate(lines, start=top):
-            for column, content in enumerate(line, start=1):
-                sheet.cell(row, column, content)
-        bottom = top + len(lines) - 1
-        sheet.add_table(Table(displayName=name, ref=f"A{top}:{chr(64 + len(lines[0]))}{bottom}"))
-        top = bottom + 2
+    add_tables(sheet, tables)
     book.save(path)
     return path
 
@@ -269,14 +249,7 @@ def book_of_dates(path):
         "xlmc_decisions": [["Name", "Cell", "Low", "High", "Step"], ["days", "=M!A4", 1.0, 5.0, 1.0]],
         "xlmc_settings": [["Setting", "Value"], ["Trials", 2_000]],
     }
-    top = 1
-    for name, lines in tables.items():
-        for row, line in enumerate(lines, start=top):
-            for column, content in enumerate(line, start=1):
-                sheet.cell(row, column, content)
-        bottom = top + len(lines) - 1
-        sheet.add_table(Table(displayName=name, ref=f"A{top}:{chr(64 + len(lines[0]))}{bottom}"))
-        top = bottom + 2
+    add_tables(sheet, tables)
     book.save(path)
     return path
 

@@ -497,7 +497,8 @@ class Use:
         for name, values in expected.forecasts.items():
             assert found.forecasts[name].tobytes() == values.tobytes(), (name, self.done[-12:])
         if session.version != version:
-            return  # the workbook was read once more meanwhile, and pages are told of it a moment later
+            self.check()  # the workbook was read once more meanwhile, and pages are told of it a moment later
+            return
         for client in self.clients:
             frame = client.heard_last("frame")
             told = (frame["version"], frame["accepted"])

@@ -17,14 +17,24 @@ def chosen(monkeypatch):
     """Run a pool without its workers: what was chosen, for how many besides this thread, and the number of blocks."""
     found = []
     runner = SimpleNamespace(borrow=lambda task, memory: ("borrowed", task, memory))
-    threads = lambda runners, blocks, tasks: found.append(("threads", len(runners) - 1, blocks)) or tasks  # noqa: E731
-    processes = lambda _, own, others, blocks, tasks: found.append(("processes", others, blocks)) or tasks  # noqa: E731
-    dask = lambda _, address, workers, blocks, tasks: found.append((address, workers, blocks)) or tasks  # noqa: E731
+
+    def by_threads(runners, blocks, tasks):
+        found.append(("threads", len(runners) - 1, blocks))
+        return tasks
+
+    def by_processes(_, own, others, blocks, tasks):
+        found.append(("processes", others, blocks))
+        return tasks
+
+    def by_cluster(_, address, workers, blocks, tasks):
+        found.append((address, workers, blocks))
+        return tasks
+
     monkeypatch.setattr(worker_pool, "model_runner", lambda *_: runner)
     monkeypatch.setattr(worker_pool, "RunSpec", SimpleNamespace(of=lambda *_: "spec"))
-    monkeypatch.setattr(worker_pool, "by_threads", threads)
-    monkeypatch.setattr(worker_pool, "by_processes", processes)
-    monkeypatch.setattr(cluster, "by_cluster", dask)
+    monkeypatch.setattr(worker_pool, "by_threads", by_threads)
+    monkeypatch.setattr(worker_pool, "by_processes", by_processes)
+    monkeypatch.setattr(cluster, "by_cluster", by_cluster)
 
     def run(pool, trials, engine="numpy", python=()):
         found.clear()

@@ -3,15 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
 
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, DataRange, Filter, Parameter
 from xlmc.montecarlo.definitions.evidence import ERRORS, SIZES, Evidence, Within
 from xlmc.montecarlo.number_text import exact_text, styled_text
-
-if TYPE_CHECKING:
-    pass
 
 __all__ = [
     "cutoffs_text",

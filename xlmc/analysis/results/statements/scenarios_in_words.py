@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import TYPE_CHECKING, Final
+from typing import Final
 
+from xlmc.analysis.results.statements.in_words import given_text
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter
 from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.scenarios import (
@@ -28,14 +29,7 @@ from xlmc.montecarlo.distributions.parameters import show
 from xlmc.montecarlo.distributions.spelling import name_key, plain
 from xlmc.montecarlo.model.cell_forms import content_in
 
-if TYPE_CHECKING:
-    pass
-
-from xlmc.analysis.results.statements.in_words import given_text
-
-__all__ = [
-    "changes_text",
-]
+__all__ = ["changes_text"]
 
 _VALUE: Final = "low"
 """The key of a number that is a value of the quantity itself."""

@@ -6,11 +6,12 @@
 
 A mutant differs from the code in one place: a comparison, an operator, `and` or `or`, a number, True or False, a `not`.
 It is made in a copy of the repository. pytest runs the examples in the module and the test file of its own, if there
-are any; then tests near by that import it, the folder that mirrors its own, and the files in the folder above, until a
-test fails or the processor time is up: that of pytest and its children, so that a busy machine decides nothing. In the
-end every test that killed a mutant is run without one: where it fails even so, it killed nothing. Survivors are printed
-with file, line and what was changed: some change nothing that anybody could see, and the others ask for a test. This
-takes a minute for a mutant at most, so it is no part of `.ci/run`; Ctrl-C ends it with what is known by then.
+are any; then tests near by that import it, the own tests of modules near by that import it, the folder that mirrors its
+own, and the files in the folder above, until a test fails or the processor time is up: that of pytest and its children,
+so that a busy machine decides nothing. In the end every test that killed a mutant is run without one: where it fails
+even so, it killed nothing. Survivors are printed with file, line and what was changed: some change nothing that anybody
+could see, and the others ask for a test. This takes a minute for a mutant at most, so it is no part of `.ci/run`;
+Ctrl-C ends it with what is known by then.
 
 No mutants are made of what cannot change a result: annotations and names of types, decorators (`slots=True`, the size
 of a cache), bases and keywords of a class, functions without a body (`@overload`, protocols), what only type checkers
@@ -21,8 +22,10 @@ from __future__ import annotations
 
 import argparse
 import ast
+import compileall
 import json
 import os
+import py_compile
 import random
 import re
 import resource
@@ -142,23 +145,37 @@ def _other_constant(value: object) -> str:
 
 
 def tests_of(path: Path) -> list[list[str]]:
-    """Return what pytest is given for a module in turn: its own tests, those that import it, its folder, that above."""
-    parts = path.with_suffix("").parts[1:]
-    folder = Path("tests", *parts[:-1])
-    own = folder / f"test_{parts[-1]}.py"
+    """Return what pytest is given for a module in turn, no file twice.
+
+    First its examples and own tests, then tests near by of what imports it, its folder, and the folder above.
+    """
+    own = own_tests(path)
+    folder = own.parent
     while not any((ROOT / folder).glob("test_*.py")) and folder != Path("tests"):
         folder = folder.parent
     examples = [path] if (ROOT / path).exists() and ">>>" in (ROOT / path).read_text(encoding="utf-8") else []
-    first = [*examples, *([own] if (ROOT / own).exists() else [])]
-    if folder == Path("tests"):
-        return [[str(each) for each in first]] if first else []
-    wide = folder if folder.parent == Path("tests") else folder.parent
-    module = re.compile(rf"^(from|import) {re.escape('.'.join(path.with_suffix('').parts))} ", re.MULTILINE)
-    near = [each.relative_to(ROOT) for each in sorted((ROOT / wide).rglob("test_*.py"))]
-    importing = [each for each in near if module.search((ROOT / each).read_text(encoding="utf-8"))]
-    above = [each for each in near if each.parent == wide != folder]
-    stages = (first, [each for each in importing if each != own], [folder], above)
-    return [[str(each) for each in tests] for tests in stages if tests]
+    stages = [[*examples, *([own] if (ROOT / own).exists() else [])]]
+    if folder != Path("tests"):
+        wide = folder if folder.parent == Path("tests") else folder.parent
+        module = re.compile(rf"^(from|import) {re.escape('.'.join(path.with_suffix('').parts))} ", re.MULTILINE)
+        near = [each.relative_to(ROOT) for each in sorted((ROOT / wide).rglob("test_*.py"))]
+        layer = (each.relative_to(ROOT) for each in sorted((ROOT / "xlmc" / wide.relative_to("tests")).rglob("*.py")))
+        users = {own_tests(each) for each in layer if module.search((ROOT / each).read_text(encoding="utf-8"))}
+        importing = [each for each in near if module.search((ROOT / each).read_text(encoding="utf-8"))]
+        stages.append([*importing, *(each for each in near if each in users)])
+        stages.append(sorted((each for each in near if folder in each.parents), key=lambda each: len(each.parts)))
+        stages.append([each for each in near if each.parent == wide])
+    once: dict[Path, int] = {}
+    for stage, tests in enumerate(stages):
+        for each in tests:
+            once.setdefault(each, stage)
+    new = ([str(each) for each, first in once.items() if first == stage] for stage in range(len(stages)))
+    return [tests for tests in new if tests]
+
+
+def own_tests(path: Path) -> Path:
+    """Return where the tests of a module's own are, or would be."""
+    return Path("tests", *path.parts[1:-1], f"test_{path.stem}.py")
 
 
 def failures(tests: Sequence[str], copy: Path, seconds: float, *options: str) -> set[str] | None:
@@ -181,6 +198,15 @@ def failures(tests: Sequence[str], copy: Path, seconds: float, *options: str) ->
         return None
     failed = cache / "v" / "cache" / "lastfailed"
     return set(json.loads(failed.read_text(encoding="utf-8"))) if failed.exists() else {*tests}
+
+
+def keep_bytecode(copy: Path) -> None:
+    """Compile a copy of the repository once; what is changed afterwards is seen by its hash, even within one second."""
+    checked = py_compile.PycInvalidationMode.CHECKED_HASH
+    compileall.compile_dir(copy / "xlmc", quiet=1, invalidation_mode=checked)
+    written = {name: value for name, value in os.environ.items() if name != "PYTHONDONTWRITEBYTECODE"}
+    collect = [sys.executable, "-m", "pytest", "-q", "--collect-only", "-p", "no:cacheprovider", "tests"]
+    subprocess.run(collect, cwd=copy, env={**written, "PYTHONPATH": str(copy)}, capture_output=True, check=False)
 
 
 def processor_time() -> float:
@@ -225,6 +251,7 @@ def main(given: Sequence[str] | None = None) -> None:
         copy = Path(folder, "copy")
         left_out = shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*_cache")
         shutil.copytree(ROOT, copy, ignore=left_out)
+        keep_bytecode(copy)
         try:
             for number, mutant in enumerate(chosen, 1):
                 end, failed = fate(mutant, copy, asked.seconds)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import os
 from pathlib import Path
 
 import mutants
@@ -57,36 +58,47 @@ def test_a_mutant_is_one_change_of_what_is_run():
 
 
 @pytest.mark.parametrize(
-    ("module", "tests"),
+    ("module", "first"),
     [
-        ("xlmc/api/models.py", [["tests/api"]]),
-        (
-            "xlmc/montecarlo/sampling/latin.py",
-            [["tests/montecarlo/sampling/test_latin.py"], ["tests/montecarlo/sampling"]],
-        ),
-        ("xlmc/excel/functions/criteria.py", [["tests/excel/functions/test_criteria.py"], ["tests/excel/functions"]]),
-        ("xlmc/__main__.py", []),
+        ("xlmc/api/models.py", "tests/api/test_api.py"),
+        ("xlmc/montecarlo/sampling/latin.py", "tests/montecarlo/sampling/test_latin.py"),
+        ("xlmc/excel/functions/criteria.py", "tests/excel/functions/test_criteria.py"),
+        ("xlmc/__main__.py", None),
     ],
 )
-def test_the_tests_of_a_module_are_those_that_mirror_it(module, tests):
-    assert mutants.tests_of(Path(module))[:2] == [[str(Path(each)) for each in group] for group in tests]
+def test_the_tests_of_a_module_are_those_that_mirror_it(module, first):
+    tests = [each for group in mutants.tests_of(Path(module)) for each in group]
+    assert len(tests) == len({*tests})
+    if first is None:
+        assert not tests
+    else:
+        assert tests[0] == str(Path(first))
+        assert {*tests} >= {
+            str(each.relative_to(mutants.ROOT)) for each in (mutants.ROOT / first).parent.glob("test_*.py")
+        }
 
 
 def test_tests_near_by_that_import_a_module_come_before_its_folder(tmp_path, monkeypatch):
     monkeypatch.setattr(mutants, "ROOT", tmp_path)
     for name, text in [
-        ("excel/functions/test_few.py", ""),
-        ("excel/functions/test_own.py", "from xlmc.excel.functions.few import f\n"),
-        ("excel/test_above.py", "import xlmc.excel.functions.few_more as more\n"),
-        ("excel/workbook/test_near.py", "import xlmc.excel.functions.few as few\n"),
-        ("engine/test_far.py", "import xlmc.excel.functions.few as few\n"),
+        ("tests/excel/functions/test_few.py", ""),
+        ("tests/excel/functions/test_own.py", "from xlmc.excel.functions.few import f\n"),
+        ("tests/excel/functions/inner/test_deep.py", ""),
+        ("tests/excel/functions/test_other.py", ""),
+        ("tests/excel/functions/test_user.py", ""),
+        ("tests/excel/test_above.py", "import xlmc.excel.functions.few_more as more\n"),
+        ("tests/excel/workbook/test_near.py", "import xlmc.excel.functions.few as few\n"),
+        ("tests/engine/test_far.py", "import xlmc.excel.functions.few as few\n"),
+        ("xlmc/excel/functions/few.py", ""),
+        ("xlmc/excel/functions/user.py", "from xlmc.excel.functions.few import f\n"),
+        ("xlmc/engine/far.py", "from xlmc.excel.functions.few import f\n"),
     ]:
-        (tmp_path / "tests" / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / "tests" / name).write_text(text, encoding="utf-8")
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text(text, encoding="utf-8")
     assert [[Path(each).name for each in group] for group in mutants.tests_of(Path("xlmc/excel/functions/few.py"))] == [
         ["test_few.py"],
-        ["test_own.py", "test_near.py"],
-        ["functions"],
+        ["test_own.py", "test_near.py", "test_user.py"],
+        ["test_other.py", "test_deep.py"],
         ["test_above.py"],
     ]
 
@@ -105,3 +117,22 @@ def test_a_mutant_that_a_test_finds_is_killed(tmp_path, monkeypatch, change, end
     [mutant] = (each for each in mutants.mutants(Path("xlmc/few.py"), source) if (each.old, each.new) == change)
     assert mutants.fate(mutant, tmp_path, 60.0)[0] == end
     assert (tmp_path / "xlmc" / "few.py").read_text(encoding="utf-8") == source
+
+
+def test_bytecode_is_kept_once_and_never_that_of_another_text(tmp_path):
+    (tmp_path / "xlmc").mkdir()
+    (tmp_path / "tests").mkdir()
+    (tmp_path / "xlmc" / "__init__.py").touch()
+    (tmp_path / "xlmc" / "few.py").write_text("SEEN = 10\n", encoding="utf-8")
+    (tmp_path / "tests" / "test_few.py").write_text(
+        "from xlmc.few import SEEN\n\ndef test_few():\n    assert SEEN == 10\n", encoding="utf-8"
+    )
+    mutants.keep_bytecode(tmp_path)
+    kept = {each: each.read_bytes() for each in tmp_path.rglob("*.pyc")}
+    assert {each.name.partition(".")[0] for each in kept} == {"__init__", "few", "test_few"}
+    assert not mutants.failures(["tests/test_few.py"], tmp_path, 60.0)
+    times = (tmp_path / "xlmc" / "few.py").stat()
+    (tmp_path / "xlmc" / "few.py").write_text("SEEN = 11\n", encoding="utf-8")
+    os.utime(tmp_path / "xlmc" / "few.py", ns=(times.st_atime_ns, times.st_mtime_ns))
+    assert mutants.failures(["tests/test_few.py"], tmp_path, 60.0)
+    assert kept == {each: each.read_bytes() for each in tmp_path.rglob("*.pyc")}

@@ -203,8 +203,11 @@ def format_estimate(value: float, error: float | None, decimals: int | None = No
         return exact_text(value)
     size = two_digit_exponent(max(abs(value), error))
     if not _SMALLEST <= size < _LARGEST:
+        shown = round(value, 1 - two_digit_exponent(error))
+        if abs(shown) >= error:  # 9.997e-12 is not yet 1.0e-11
+            size = int(f"{shown:.14e}".partition("e")[2])
         scaled = format_estimate(value / 10.0**size, error / 10.0**size)
-        return f"({scaled})e{size:+03d}"
+        return f"({scaled})e{size:+03d}" if "±" in scaled else f"{scaled}e{size:+03d}"
     decimals = 1 - two_digit_exponent(error) if decimals is None else decimals
     if decimals + size >= MOST_DIGITS:  # an error below the last bit of the value, which is rounding
         return exact_text(value)

@@ -82,6 +82,21 @@ def test_numbers(form, value, all_digits, one_decimal, six_digits, beside_an_axi
     assert [written.rough(value), written.tick(value, 2)] == [six_digits, beside_an_axis]
 
 
+@pytest.mark.parametrize(
+    ("code", "text"),
+    [
+        ('#,##0,,"M €"', "2,500,000 €"),  # the cell shows millions, and xlmc the whole amount
+        ('"$"#,##0.0,"k"', "$2,500,000"),
+        ('0.0,, "M" [$USD]', "2,500,000 USD"),
+        ('"$"#,##0.0"M"', "$2,500,000M"),  # the cell itself holds millions
+        ('"$"#,##0" a year"', "$2,500,000 a year"),
+        ("#,##0", "2,500,000"),
+    ],
+)
+def test_words_beside_money_say_what_the_number_is(code, text):
+    assert Form(Kind.CURRENCY, code).number(2.5e6) == text
+
+
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
 @pytest.mark.parametrize("form", ["plain", "day", "percent"])
 def test_what_is_no_number_is_not_written(form, value):
@@ -137,6 +152,12 @@ def test_a_number_beside_another_has_its_digits():
         ("plain", (1.0, 0.1), (2.0, 0.012), "1.00 ± 0.10 to 2.00 ± 0.01"),
         ("plain", (1.0, None), (2.0, 0.3), "1.00 to 2.00 ± 0.30"),
         ("plain", (1.0, None), (2.0, 0.0), "1.00 to 2"),
+        ("plain", (1.0, 0.0), (2.25, 0.0), "1.00 to 2.25"),
+        ("whole", (105.0, 0.0), (127.0, 0.0), "105 to 127"),
+        ("percent", (105 / 116, 0.0), (127 / 116, 0.0), "90.517 % to 109.483 %"),
+        ("percent", (0.1234567, 0.0), (127 / 116, 0.0), "12.34567 % to 109.48276 %"),
+        ("dollars", (0.0, 0.0), (1e6 / 3, 0.0), "$0 to $333,333"),
+        ("plain", (1e-9, 0.0), (2.5e-9, 0.0), "1e-09 to 2.5e-09"),
         ("percent", (1.0, None), (2.0, 0.3), "100 % to 200 ± 30 %"),
         ("day", (46082.0, 0.7), (46112.0, None), "2026-03-01 ± 17 h to 2026-03-31"),
     ],

@@ -15,6 +15,7 @@ from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.number_text import (
     MOST_DIGITS,
     decimals_of,
+    exact_digits,
     exact_text,
     fixed_text,
     format_estimate,
@@ -32,6 +33,8 @@ __all__ = ["PLAIN", "Form", "kind_of_format", "span_text"]
 _QUOTED: Final = re.compile(r'"([^"]*)"|\\(.)|\[\$([^\]-]*)(?:-[^\]]*)?\]|\[[^\]]*\]|_.|\*.')
 _DIGITS: Final = re.compile(r"[#0?][#0?,.\s]*")
 _DECIMALS: Final = re.compile(r"[0#?]\.(0+)")
+_SHORTENED: Final = re.compile(r"[0#?],+(?![0#?,])")
+"""Commas behind the last digit: the cell shows thousands or millions."""
 _SIGNS: Final = "$€£¥₹₽₩₺₴฿₫₱₪₦"
 _CODES: Final = re.compile(
     r"\b(USD|EUR|GBP|JPY|CHF|CAD|AUD|NZD|CNY|INR|SEK|NOK|DKK|PLN|CZK|HUF|BRL|MXN|ZAR)\b|kr|zł|Kč"
@@ -73,6 +76,13 @@ def _is_money(affix: str) -> bool:
     return any(sign in affix for sign in _SIGNS) or bool(_CODES.search(affix))
 
 
+def _money_in(affix: str) -> str:
+    """Return the sign of money in what stands beside a number, with the space towards the number."""
+    sign = next((each for each in _SIGNS if each in affix), None)
+    found = re.search(rf"\s*{re.escape(sign)}\s*" if sign else rf"\s*(?:{_CODES.pattern})\s*", affix)
+    return found[0] if found else ""
+
+
 def _affixes(first: str) -> tuple[str, str]:
     """Return what a section writes before and after the digits, as plain text."""
     marked = _QUOTED.sub(lambda found: "".join(part or "" for part in found.groups()), first)
@@ -111,8 +121,12 @@ class Form:
             return "", " %"
         if self.kind is not Kind.CURRENCY:
             return "", ""
-        before, after = _affixes(self.code.partition(";")[0])
-        return (before if _is_money(before) else ""), (after if _is_money(after) else "")
+        first = self.code.partition(";")[0]
+        before, after = _affixes(first)
+        if not (_is_money(before) or _is_money(after)):
+            return "", ""
+        # `#,##0,,"M €"` shows millions; the numbers here are whole ones, so that only the sign of money is true of them
+        return (_money_in(before), _money_in(after)) if _SHORTENED.search(_QUOTED.sub("", first)) else (before, after)
 
     def number(self, value: float, decimals: int | None = None, *, typed: bool = False) -> str:
         """Write a number without an error, to so many decimals of what is written; by default with all that it has, up
@@ -180,6 +194,8 @@ class Form:
     def ends(self, low: Estimate, high: Estimate, like: Estimate) -> str:
         """`172.53 ± 0.70 to 243.16 ± 0.97`, both to the same decimal; ends without an error as `like`."""
         decimals = self.decimals_of_both(low, high)
+        if decimals is None and not (low.error or high.error) and None not in (low.error, high.error):
+            decimals = self._decimals_of_exact(low.value, high.value)
         texts = []
         for end in (low, high):
             if end.error or self.kind is Kind.DATE:
@@ -189,6 +205,17 @@ class Form:
             else:
                 texts.append(self.estimate(end) if end.error == 0.0 else self.beside(end.value, like))
         return " to ".join(texts)
+
+    def _decimals_of_exact(self, *values: float) -> int | None:
+        """Return the decimals of two numbers without an error: all that they have, or six digits of the larger one."""
+        scaled = [self._scaled(value) for value in values]
+        if self.kind is Kind.DATE or not all(map(math.isfinite, scaled)) or any(map(is_far, scaled)):
+            return None
+        exact = [exact_text(value).partition(signs()[1])[2] for value in scaled if exact_digits(value)]
+        needed = max(map(len, exact), default=0)
+        if len(exact) == len(scaled):
+            return needed
+        return max(needed, 5 - two_digit_exponent(max(map(abs, scaled))), 0)
 
     def decimals_of_both(self, *found: Estimate) -> int | None:
         """Return the decimals of two numbers that stand beside each other: those of the larger error."""

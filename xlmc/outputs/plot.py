@@ -237,10 +237,7 @@ def _trend(axes: Axes, simulation: RunResult, name: str | None) -> None:
 
 def _measure_of(each: Drawn) -> tuple[object, ...]:
     """Return what the numbers of two forecasts must share to stand on one axis."""
-    form = each.answer.form
-    if form.kind in (Kind.NUMBER, Kind.WHOLE):
-        return (each.answer.units,)
-    return each.answer.units, form.kind, form.affixes, form.shows if form.kind is Kind.DATE else ""
+    return each.answer.units, *each.answer.form.axis
 
 
 def _before_after(axes: Axes, simulation: RunResult, name: str | None) -> None:

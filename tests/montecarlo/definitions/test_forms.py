@@ -239,3 +239,13 @@ def test_spans(days, error, text, exact):
     assert span_text(days, error) == text
     if exact is not None:
         assert span_text(days, exact=True) == FORMS["day"].width(days) == exact
+
+
+def test_days_share_no_axis_with_times_of_day():
+    days, spans, numbers = (
+        (FORMS["day"], FORMS["time"]),
+        (FORMS["span"], Form(Kind.DATE, "h:mm AM/PM")),
+        (PLAIN, FORMS["whole"]),
+    )
+    assert [len({each.axis for each in group}) for group in (days, spans, numbers)] == [1, 1, 1]
+    assert len({each.axis for each in (days[0], spans[0], PLAIN, FORMS["percent"], FORMS["euros"])}) == 5

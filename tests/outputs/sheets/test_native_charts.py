@@ -76,15 +76,15 @@ def test_an_axis_across_0_is_left_to_the_program():
 
 def test_a_change_of_an_answer_without_a_range_is_no_part_of_it(make):
     run = make.simulate(
-        {"A1": 0.5, "B1": "=IF(A1<0.99,1,0)", "C1": "=A1"},
+        {"A1": 0.5, "B1": "=IF(A1<0.99,3,2)", "C1": "=A1"},
         [make.uniform("a", "A1", 0.0, 1.0, base=0.5)],
         [make.forecast("x", "B1")],
         [make.filter("f", "C1", at_most=0.7)],
     )
     from xlmc.analysis.studies.sensitivity import sensitivities
 
-    (limit,) = sensitivities(run).filter_limits
-    chart = limit_chart_of_ranges(limit)
+    found = sensitivities(run)
+    chart = limit_chart_of_ranges(*found.filter_limits, {each.forecast: each for each in found.forecasts})
     assert all(point[1] != point[1] for point in chart.data.lines[0].points)
     drawn, _ = written(chart.data)
     assert len(drawn.series) == 1

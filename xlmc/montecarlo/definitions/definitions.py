@@ -193,13 +193,11 @@ class Assumption:
 
     def form_of(self, key: str, value: float) -> Form:
         """Return how a number is written: as its cell where it is a value of the quantity itself, or a distance of
-        such; of dates where it is a value alone.
+        such; of days where it is a value alone.
         """
-        if self.form.kind is Kind.DATE:
-            own = value >= _FIRST_DATE
-        else:
-            own = key in _OF_QUANTITY or (key[:1] == "p" and key[1:2].isdigit())
-        return self.form if own else PLAIN
+        of_quantity = key in _OF_QUANTITY or (key[:1] == "p" and key[1:2].isdigit())
+        is_day = self.form.kind is Kind.DATE and self.form.shows != "span"
+        return self.form if (value >= _FIRST_DATE if is_day else of_quantity) else PLAIN
 
     @property
     def cells(self) -> tuple[Cell, ...]:

@@ -128,6 +128,12 @@ class Form:
         # `#,##0,,"M €"` shows millions; the numbers here are whole ones, so that only the sign of money is true of them
         return (_money_in(before), _money_in(after)) if _SHORTENED.search(_QUOTED.sub("", first)) else (before, after)
 
+    @property
+    def axis(self) -> tuple[object, ...]:
+        """What forms have in common whose numbers fit one axis: days and spans of time do not."""
+        is_date = self.kind is Kind.DATE
+        return is_date, is_date and self.shows == "span", self.factor, self.affixes
+
     def number(self, value: float, decimals: int | None = None, *, typed: bool = False) -> str:
         """Write a number without an error, to so many decimals of what is written; by default with all that it has, up
         to six digits or more, and with all that a person has `typed`.

@@ -14,7 +14,9 @@ from xlmc.outputs.filter_effect import shapes_of
 from xlmc.outputs.summary import frequent_texts, shares_of
 
 if TYPE_CHECKING:
-    from xlmc.analysis.studies.sensitivity import FilterLimit, ForecastSensitivity
+    from collections.abc import Mapping
+
+    from xlmc.analysis.studies.sensitivity import FilterLimit, ForecastSensitivity, LimitAnswer
     from xlmc.montecarlo.simulation.simulation import RunResult
     from xlmc.outputs.histogram import Figure
 
@@ -26,6 +28,7 @@ __all__ = [
     "shape_chart",
     "shares_chart",
     "tornado_chart",
+    "width_of_range",
 ]
 
 SHARE: Final = Form(Kind.PERCENT)
@@ -99,10 +102,15 @@ def limit_chart(limit: FilterLimit, indexes: list[int], unit: str, form: Form = 
     return _moved("Change of each mean", limit, changes, _change("Change of the mean", unit), form)
 
 
-def limit_chart_of_ranges(limit: FilterLimit) -> Chart:
+def width_of_range(forecast: ForecastSensitivity, now: LimitAnswer) -> float:
+    """Return the width of a forecast's central range; of yes and no, which have none, that of all shares."""
+    return 1.0 if forecast.form.kind is Kind.YES_NO else now.high.value - now.low.value
+
+
+def limit_chart_of_ranges(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> Chart:
     """Chart the same of forecasts of any units: each change as a part of the forecast's central range."""
     now = next(point for point in limit.points if point.limit == limit.limit).answers
-    widths = {each.forecast: each.high.value - each.low.value for each in now}
+    widths = {each.forecast: width_of_range(forecasts[each.forecast], each) for each in now}
     changes = {
         slope.forecast: [_part(each.answers[index].change, widths[slope.forecast]) for each in limit.points]
         for index, slope in enumerate(limit.slopes)
@@ -122,7 +130,7 @@ def _moved(title: str, limit: FilterLimit, found: dict[str, list[Estimate]], upw
         Line(name, tuple((p.limit, each.value, each.error) for p, each in zip(limit.points, numbers, strict=True)))
         for name, numbers in found.items()
     )
-    data = Lines(lines, upwards, dots=True, now=limit.limit, from_zero=True, form_upwards=form)
+    data = Lines(lines, upwards, dots=True, now=limit.limit, from_zero=True, form_across=limit.form, form_upwards=form)
     return Chart(title, f"Limit: {limit.filter} {limit.relation}", data, f"{title}: {', '.join(found)}")
 
 

@@ -167,7 +167,7 @@ def _lines(chart: Chart, shown: Lines) -> Drawing:
         y = scale_of([0.0, 1.0], bottom, top, form=Form(Kind.PERCENT))
     else:
         y = scale_of(shown.heights, bottom, top, form=shown.form_upwards)
-    left = max(60.0, 30.0 + _CHARACTER * max((len(text) for _, text in y.marks), default=0))
+    left = max(60.0, 34.0 + _CHARACTER * max((len(text) for _, text in y.marks), default=0))
     x = scale_of([*known, *(point[0] for point in points)], left, right, form=shown.form_across)
     found = _title(chart)
     for tick, text in y.marks:
@@ -197,7 +197,8 @@ def _lines(chart: Chart, shown: Lines) -> Drawing:
         ]
     found.append(text_at((left + right) / 2, bottom + 34, chart.across))
     found.append(text_at(14, (top + bottom) / 2, shown.upwards, turned=True))
-    return drawing(found, 570.0, bottom + 42, chart.said, chart.width)
+    names = max((len(short_name(line.name, _BESIDE)) for line in shown.all), default=0)
+    return drawing(found, max(570.0, right + 44.0 + _CHARACTER * names), bottom + 42, chart.said, chart.width)
 
 
 def _dot(x: float, y: float) -> str:
@@ -346,8 +347,8 @@ class Scale:
         return found[:: max(math.ceil(wide / room), 1)]
 
 
-_CHARACTER = 5.4
-"""The width of a digit in a text of the usual size."""
+_CHARACTER = 7.0
+"""The width of a digit in a text of the usual size, in the widest of the letters that a page may have."""
 
 
 def scale_of(values: list[float], start: float, stop: float, *, most: int = 6, form: Form = PLAIN) -> Scale:

@@ -105,8 +105,7 @@ def overlays_of(figures: Sequence[Figure]) -> list[list[int]]:
 
 def axis_of(figure: Figure) -> tuple[object, ...]:
     """Return what figures have in common whose answers fit one axis: units, and how their numbers are written."""
-    form = figure.answer.form
-    return figure.answer.units, form.kind is Kind.DATE, form.factor, form.affixes
+    return figure.answer.units, *figure.answer.form.axis
 
 
 def forecast_payload(simulation: RunResult, figure: Figure, most: int, *, fits: bool = True) -> dict[str, Any]:

@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.statements.in_words import given_text
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document.charts import acceptance_chart, limit_chart, limit_chart_of_ranges
@@ -18,6 +17,7 @@ from xlmc.outputs.document.content.limits import (
     answers_table,
     limit_heading,
     limit_sentences,
+    limit_text,
     moved_caption,
     nothing_moves,
     slopes_table,
@@ -117,7 +117,7 @@ def _moved_chart(
         form = shown[0].change_form if any(shown[0].form.affixes) else PLAIN
         chart, value = limit_chart(limit, [*range(len(shown))], shown[0].change_units, form), _CHANGE
     else:
-        chart, value = limit_chart_of_ranges(limit), _OF_RANGE
+        chart, value = limit_chart_of_ranges(limit, forecasts), _OF_RANGE
     lines = [at.line(0, (_LIMIT, value, value + 1)) for at in tables]
     return native_chart(book, chart, lines), moved_caption(limit)
 
@@ -128,7 +128,7 @@ def _acceptance_chart(book: Workbook, limit: FilterLimit, at: TableAt) -> Captio
 
 def _brief(limit: FilterLimit) -> str:
     """Return the caption of the same chart where the sheet says once what all of them show."""
-    return f"{limit.filter}: as it is, {given_text(limit.limit)}.{nothing_moves(limit)}"
+    return f"{limit.filter}: as it is, {limit_text(limit)}.{nothing_moves(limit)}"
 
 
 def _share_caption(limit: FilterLimit) -> str:

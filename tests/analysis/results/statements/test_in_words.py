@@ -104,6 +104,19 @@ def test_parameters_stand_in_the_familys_order():
     assert parameters_text(Assumption("a", HERE, "Uniform", {"high": 2.0, "low": 1.0}, HERE)) == "Low 1, High 2"
 
 
+@pytest.mark.parametrize(
+    ("code", "parameters", "text"),
+    [
+        ("hh:mm", {"low": 0.25, "high": 0.75}, "Low 06:00, High 18:00"),
+        ("[h]:mm", {"low": 0.5, "high": 1.25}, "Low 12:00, High 30:00"),
+        ("yyyy-mm-dd", {"low": 0.25, "high": 46_000.0}, "Low 0.25, High 2025-12-09"),
+    ],
+)
+def test_times_of_day_are_written_so(code, parameters, text):
+    form = Form(Kind.DATE, code)
+    assert parameters_text(Assumption("a", HERE, "Uniform", parameters, HERE, form=form)) == text
+
+
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_numbers_read_back_as_themselves(number):
     assert float(plain_text(number)) == number

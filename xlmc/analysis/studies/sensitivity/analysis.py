@@ -140,4 +140,5 @@ def _move_limit(forecasts: Sequence[Forecast], tried: TriedLimit) -> FilterLimit
         slopes=slopes,
         trials=tried.trials.trials,
         loosened_trials=tried.trials.loosened,
+        form=tried.limit.filter.form,
     )

@@ -151,12 +151,14 @@ class ForecastSensitivity:
         """The units of a change of it: of dates days, of money its sign; empty where it has none."""
         if self.form.kind is Kind.DATE:
             return "days"
+        if self.form.kind is Kind.YES_NO:
+            return "%"
         return self.units or "".join(self.form.affixes).strip()
 
     @property
     def change_form(self) -> Form:
         """How a change of it is written, beside its units."""
-        return PLAIN if self.form.kind in (Kind.DATE, Kind.YES_NO) else self.form
+        return PLAIN if self.form.kind is Kind.DATE else self.form
 
     @property
     def base_text(self) -> str:
@@ -224,6 +226,7 @@ class FilterLimit:
         slopes: one a forecast; from the points next to the limit as it is.
         trials: of the run's trials, those whose accepted ones the points rest on.
         loosened_trials: those that were evaluated again to find the ones that only this limit rejects.
+        form: how the numbers of the cell are written.
     """
 
     filter: str
@@ -234,6 +237,7 @@ class FilterLimit:
     slopes: tuple[Slope, ...]
     trials: int
     loosened_trials: int
+    form: Form = PLAIN
 
 
 @dataclass(frozen=True, slots=True, repr=False)

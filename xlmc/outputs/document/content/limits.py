@@ -6,13 +6,12 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.statements.in_words import given_text
 from xlmc.analysis.studies.sensitivity import sensitivities
-from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.number_text import count_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
-from xlmc.outputs.document.charts import limit_chart
+from xlmc.outputs.document.charts import limit_chart, width_of_range
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Block, Content, Figure, Heading, Paragraph, Table
 
@@ -34,6 +33,7 @@ __all__ = [
     "limit_figures",
     "limit_heading",
     "limit_sentences",
+    "limit_text",
     "moved_caption",
     "nothing_moves",
     "section",
@@ -61,7 +61,12 @@ def limit_blocks(found: Sensitivities) -> Iterator[Block]:
 
 def limit_heading(limit: FilterLimit) -> str:
     """Name a limit."""
-    return f"{limit.filter}: {limit.relation} {given_text(limit.limit)} ({limit.cell})"
+    return f"{limit.filter}: {limit.relation} {limit_text(limit)} ({limit.cell})"
+
+
+def limit_text(limit: FilterLimit) -> str:
+    """Write a limit as the cell of its filter shows numbers."""
+    return limit.form.number(limit.limit, typed=True)
 
 
 def limit_sentences(found: Sensitivities) -> list[str]:
@@ -86,10 +91,15 @@ def limit_sentences(found: Sensitivities) -> list[str]:
 def acceptance_table(limit: FilterLimit) -> Table:
     """Return the share of the trials that is accepted at each value of the limit."""
     rows = (
-        (_tighter_or_looser(each.limit, limit), cells.exact(each.limit), cells.count(each.trials), _share(each))
+        (_tighter_or_looser(each.limit, limit), _place(each, limit), cells.count(each.trials), _share(each))
         for each in limit.points
     )
     return Table("", ("Limit", "Value", "Trials", "Share"), tuple(rows))
+
+
+def _place(point: LimitPoint, limit: FilterLimit) -> Shown:
+    """Show one value of a limit, in the form of the filter's cell."""
+    return cells.exact(point.limit, limit.form)
 
 
 def _share(point: LimitPoint) -> Measured:
@@ -116,21 +126,24 @@ def answers_table(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivit
     for index, slope in enumerate(limit.slopes):
         now = next(point.answers[index] for point in limit.points if point.limit == limit.limit)
         forecast = forecasts[slope.forecast]
-        rows += [_answer(forecast, point.limit, point.answers[index], now) for point in limit.points]
+        rows += [_answer(forecast, _place(point, limit), point.answers[index], now) for point in limit.points]
     return Table("", heads, tuple(rows))
 
 
-def _answer(forecast: ForecastSensitivity, limit: float, answer: LimitAnswer, now: LimitAnswer) -> tuple[Content, ...]:
-    width, look, form, like = now.high.value - now.low.value, "number", forecast.form, now.mean
+def _answer(forecast: ForecastSensitivity, limit: Shown, answer: LimitAnswer, now: LimitAnswer) -> tuple[Content, ...]:
+    width, look, form, like = width_of_range(forecast, now), "number", forecast.form, now.mean
+    is_share = form.kind is Kind.YES_NO
     if answer is now:
         look = "second number"
     return (
         forecast.forecast,
-        Shown(limit, look=look),
+        replace(limit, look=look),
         Measured(answer.mean, form=form, look=look, like=like),
         Measured(answer.change, "change", form, look, like=like),
-        Measured(answer.low, form=form, look=look, like=like),
-        Measured(answer.high, form=form, look=look, like=like),
+        *(
+            Measured(None if is_share else end, form=form, look=look, like=like, nothing=cells.NONE)
+            for end in (answer.low, answer.high)
+        ),
         *(
             Shown(None if each is None or width <= 0.0 else each / width, "0.0%", look)
             for each in (answer.change.value, answer.change.error)
@@ -146,20 +159,20 @@ def limit_figures(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivit
     if still := nothing_moves(limit):
         yield Paragraph(still.strip())
         return
-    alike: dict[tuple[str, Form], list[int]] = {}
+    alike: dict[tuple[object, ...], list[int]] = {}
     for index, slope in enumerate(limit.slopes):
         each = forecasts[slope.forecast]
-        form = replace(each.form, report_to=None)
-        alike.setdefault((each.change_units, form if any(form.affixes) else PLAIN), []).append(index)
-    for number, ((unit, form), indexes) in enumerate(alike.items()):
-        shown = forecasts[limit.slopes[indexes[0]].forecast].change_form if form != PLAIN else PLAIN
-        yield Figure(limit_chart(limit, indexes, unit, shown), "" if number else moved_caption(limit))
+        alike.setdefault((each.change_units, *each.form.axis), []).append(index)
+    for number, indexes in enumerate(alike.values()):
+        first = forecasts[limit.slopes[indexes[0]].forecast]
+        chart = limit_chart(limit, indexes, first.change_units, first.change_form)
+        yield Figure(chart, "" if number else moved_caption(limit))
 
 
 def moved_caption(limit: FilterLimit) -> str:
     """Return the caption of the chart of the changes."""
     return (
-        f"How far each forecast's mean moves from that with the limit as it is ({given_text(limit.limit)}); whiskers "
+        f"How far each forecast's mean moves from that with the limit as it is ({limit_text(limit)}); whiskers "
         f"are standard errors of the change. Other filters and limits stay.{nothing_moves(limit)}"
     )
 

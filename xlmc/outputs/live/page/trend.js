@@ -17,7 +17,7 @@ function onOneAxis(panels) {
   const groups = new Map();
   for (const panel of panels) {
     const { units, form } = panel.forecast;
-    const key = [units, form.moment, form.factor, form.before, form.after].join("\n");
+    const key = [units, Boolean(form.moment), form.moment === "span", form.factor, form.before, form.after].join("\n");
     groups.set(key, [...(groups.get(key) ?? []), panel]);
   }
   return [...groups.values()].filter((group) => group.length > 1);

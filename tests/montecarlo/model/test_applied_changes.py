@@ -174,6 +174,18 @@ def test_rows_whose_cells_other_formulas_read(book_of_rows, subtests):
         "read by a formula": ([Range("a", 2.0, 3.0)], {"Inputs!C2": 2.0, "Inputs!D2": 3.0}),
         "about its own cell": ([Frozen("a", 1.5)], {"Inputs!B2": 1.5, "Inputs!E2": True}),
         "a formula in the row": ([Range("b", None, 7.0)], {"Inputs!D3": 7.0}),
+        "a distribution that reads a range": (
+            [Range("a", 2.0, 3.0), Range("d", None, 5.0)],
+            {"Inputs!C2": 2.0, "Inputs!D2": 3.0, "Inputs!D5": 5.0},
+        ),
+        "the end that reads another": (
+            [Range("a", 2.0, 3.0), Range("d", 3.5, None)],
+            {"Inputs!C2": 2.0, "Inputs!D2": 3.0, "Inputs!C5": 3.5},
+        ),
+        "held beside what it reads": (
+            [Range("a", 2.0, 3.0), Frozen("d", 1.25)],
+            {"Inputs!C2": 2.0, "Inputs!D2": 3.0, "Inputs!B5": 1.25, "Inputs!E5": True},
+        ),
         "a cell that a filter reads": ([Limits("f", {"below": 9.0})], {"Wanted!C5": 9.0}),
         "drawn again": (
             [Drawn("c"), Range("c", 0.0, 2.0), Range("b", None, 7.0)],
@@ -193,12 +205,13 @@ def book_of_rows(tmp_path_factory):
         book.remove(book.active)
         rows = {
             "Inputs": [
-                ["Name", "Value", "Low", "High", "Frozen"],
+                ["Name", "Value", "Low", "High", "Frozen", "Distribution"],
                 ["a", 1.0, 1.0, 2.0, None],
                 ["b", 5.0, "=B3*0.5", "=B3*1.2+B4*0.1", None],
                 ["c", 1.0, 0.5, 1.5, True],
+                ["d", 3.0, "=C2*0.5", 4.0, None, '=IF(C2>1.5,"Reciprocal","Uniform")'],
             ],
-            "Model": [["=Inputs!B2*Inputs!B3+Inputs!B4+Inputs!D2", "=Inputs!C2*4"]],
+            "Model": [["=Inputs!B2*Inputs!B3+Inputs!B4+Inputs!D2+0.1*Inputs!B5", "=Inputs!C2*4"]],
             "Wanted": [
                 ["Name", "Cell"],
                 ["x", "=Model!A1"],
@@ -211,7 +224,7 @@ def book_of_rows(tmp_path_factory):
             sheet = book.create_sheet(name)
             for line in lines:
                 sheet.append(line)
-        for name, area in (("assumptions", "Inputs!A1:E4"), ("forecasts", "Wanted!A1:B2"), ("filters", "Wanted!A4:D5")):
+        for name, area in (("assumptions", "Inputs!A1:F5"), ("forecasts", "Wanted!A1:B2"), ("filters", "Wanted!A4:D5")):
             where = parse_address(area)
             book[where.sheet].add_table(Table(displayName=f"xlmc_{name}", ref=where.a1))
         for address, value in cells.items():

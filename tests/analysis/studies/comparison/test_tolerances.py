@@ -6,7 +6,14 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from xlmc.analysis.studies.comparison.tolerances import Verdict, judge, read_tolerances
+from xlmc.analysis.studies.comparison.tolerances import (
+    Verdict,
+    chance_of,
+    chance_tolerance,
+    in_tolerances,
+    judge,
+    read_tolerances,
+)
 from xlmc.errors import SimulationError
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import Forecast
@@ -97,3 +104,85 @@ def test_as_many_trials_as_it_asks_for_decide_if_the_difference_is_what_it_seems
         assert 1.0 <= found.times <= 9.0 * (1 + 1e-12)
         later = judge({"mean": (Estimate(value, error / math.sqrt(found.times * 1.001)), tolerance)})
         assert later.verdict is not Verdict.UNDECIDED or abs(tolerance - value) <= error
+
+
+@pytest.mark.parametrize(
+    ("value", "error", "verdict", "times"),
+    [
+        (0.375, 0.0625, "undecided", 2.25),  # 0.375 + 3 errors are 0.5625: of half the errors they are below 0.5
+        (-0.625, 0.0625, "undecided", 2.25),
+        (0.3125, 0.0625, "within", 1.0),  # with three errors exactly the tolerance
+        (0.6875, 0.0625, "undecided", 1.0),
+        (0.5, 0.0625, "undecided", 9.0),  # how near it is, is known to one error only
+        (0.5, 0.008, "undecided", math.inf),  # three errors are less than 5 % of the tolerance
+        (0.5, 0.009, "undecided", 9.0),
+        (math.nan, 0.1, "undecided", math.inf),
+        (0.1, None, "undecided", math.inf),
+    ],
+)
+def test_how_many_times_as_many_trials_decide(value, error, verdict, times):
+    found = judge({"mean": (Estimate(value, error), 0.5)})
+    assert (found.verdict.value, found.times) == (verdict, pytest.approx(times))
+    assert found.blind == (error is None or math.isnan(value))
+
+
+def test_times_and_blindness_are_of_the_numbers_that_make_the_verdict():
+    near, within, blind = Estimate(0.375, 0.0625), Estimate(0.1, 0.01), Estimate(0.3, None)
+    found = judge({"a": (near, 0.5), "b": (Estimate(0.5, 0.0625), 0.5), "c": (within, 0.05)})
+    assert (found.largest, found.times, found.blind) == ("c", 1.0, False)
+    found = judge({"a": (near, 0.5), "b": (Estimate(0.5, 0.0625), 0.5), "c": (within, 0.5)})
+    assert (found.largest, found.times, found.blind) == ("b", 9.0, False)
+    assert judge({"a": (blind, 0.5), "c": (Estimate(2.0, 0.01), 0.5)}).blind is False
+    assert judge({"a": (blind, 0.5), "c": (near, 0.5)}).blind is True
+    with pytest.raises(ValueError, match="no difference"):
+        judge({})
+
+
+@pytest.mark.parametrize(
+    ("value", "tolerance", "size"),
+    [(-1.0, 0.5, 2.0), (0.0, 0.0, 0.0), (0.1, 0.0, math.inf), (math.nan, 0.5, math.inf), (0.0, 0.5, 0.0)],
+)
+def test_the_size_of_a_difference_in_its_tolerance(value, tolerance, size):
+    assert in_tolerances(Estimate(value, 0.1), tolerance) == size
+
+
+@pytest.mark.parametrize(
+    ("share", "tolerance"),
+    [(0.5, 0.05), (0.7, 0.03), (0.3, 0.03), (0.98, 0.002), (0.002, 0.001), (0.0, 0.001), (1.0, 0.001)],
+)
+def test_a_probability_without_a_stated_tolerance(share, tolerance):
+    assert chance_tolerance(share) == tolerance
+
+
+@pytest.mark.parametrize(("points", "share"), [(None, None), (1.0, 0.01), (0.5, 0.005), (99.0, 0.99)])
+def test_percentage_points(points, share):
+    assert chance_of(points) == share
+
+
+@pytest.mark.parametrize("points", [0.0, 100.0, -1.0, math.nan])
+def test_what_cannot_be_percentage_points(points):
+    with pytest.raises(SimulationError, match="percentage points"):
+        chance_of(points)
+
+
+@pytest.mark.parametrize(
+    ("texts", "chance", "found"),
+    [
+        ([], None, (math.nan, False)),
+        (["0.5"], None, (math.nan, False)),
+        (["20 %"], None, (0.08, True)),
+        (["20 %"], 0.02, (math.nan, False)),
+        (["PDOF=20 %"], None, (math.nan, False)),
+        (["Chevy delta-V=20 %"], 0.02, (0.08, True)),
+        (["Chevy delta-V=0.03"], None, (0.03, True)),
+    ],
+)
+def test_tolerances_of_shares(texts, chance, found):
+    assert read_tolerances(texts, BOTH).of_share(SPEED, 0.4, chance) == pytest.approx(found, nan_ok=True)
+
+
+def test_a_number_for_all_forecasts_is_refused_where_all_are_counted():
+    read_tolerances(["20 %", "PDOF=1"], BOTH).refuse_for_shares(BOTH)
+    with pytest.raises(SimulationError, match=r"The tolerance '0.5 mph' holds for no forecast") as caught:
+        read_tolerances(["PDOF=1", "0.5 mph"], BOTH).refuse_for_shares(BOTH)
+    assert "'Chevy delta-V=0.02'" in caught.value.hint

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from importlib import import_module
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -11,11 +12,85 @@ import pytest
 from xlmc.analysis.studies.methods import recommendation, study
 from xlmc.analysis.studies.methods.curve import Rms, in_order, rms_of
 from xlmc.analysis.studies.methods.law import law
-from xlmc.analysis.studies.methods.need import choice, need, seconds_of, worst_error
+from xlmc.analysis.studies.methods.need import (
+    Need,
+    _verdict,
+    choice,
+    chosen_of,
+    need,
+    seconds_of,
+    tied,
+    worst_error,
+)
 from xlmc.analysis.studies.methods.recommendation import parts_of
 from xlmc.analysis.studies.methods.study import LENGTHS, STEP, ladder_of
 
 CONSISTENT = ("mc", "lhs", "sobol", "grid")
+
+
+@pytest.mark.parametrize(
+    ("seconds", "reaches", "usable"),
+    [(1.0, "yes", True), (np.inf, "yes", False), (np.nan, "yes", False), (1.0, "no", False), (1.0, "unknown", False)],
+)
+def test_which_method_can_be_recommended(seconds, reaches, usable):
+    assert Need(1000.0, seconds, "x", "mean", 1.0, reaches).usable is usable
+
+
+@pytest.mark.parametrize(
+    ("trials", "seconds"),
+    [
+        (100.0, 1.0),
+        (200.0, 2.0),
+        (250.0, 3.5),
+        (300.0, 5.0),
+        (600.0, 10.0),  # beyond the longest run, at its rate
+        (50.0, 1.0),
+        (np.inf, np.inf),
+        (np.nan, np.inf),
+    ],
+)
+def test_seconds_of_a_run(trials, seconds):
+    """In proportion between the runs that were clocked; the one of 400 was not."""
+    clocked = [(100, 1.0), (200, 2.0), (300, 5.0), (400, np.nan)]
+    curve = SimpleNamespace(lengths=[SimpleNamespace(budget=b, seconds=s) for b, s in clocked])
+    assert seconds_of(curve, trials) == pytest.approx(seconds)
+    assert seconds_of(SimpleNamespace(lengths=curve.lengths[3:]), trials) == np.inf
+
+
+@pytest.mark.parametrize(
+    ("seconds", "found"),
+    [
+        ({"a": 10.0, "b": 12.0, "c": 12.01, "d": 9.9999}, "da"),
+        ({"a": 10.0, "b": 12.0, "c": 12.01}, "ab"),
+        ({"a": 0.25, "b": 0.125, "c": 0.225, "d": 0.2251}, "bc"),  # within a tenth of a second
+        ({"a": 0.5, "b": 0.6, "c": 0.61}, "ab"),
+    ],
+)
+def test_methods_within_a_fifth_or_a_tenth_of_a_second_tie(seconds, found):
+    assert "".join(tied(seconds)) == found
+
+
+@pytest.mark.parametrize(
+    ("costs", "chosen"),
+    [
+        ({"mc": 3.0, "lhs": 2.0}, "mc"),
+        ({"mc": 3.01, "lhs": 2.0}, "lhs"),
+        ({"mc": 0.2, "lhs": 0.1}, "mc"),
+        ({"mc": 0.2001, "lhs": 0.1}, "lhs"),
+        ({"mc": 1.0, "lhs": 2.0}, "mc"),
+        ({"mc": 9.0, "lhs": 2.0, "sobol": 1.0}, "sobol"),
+    ],
+)
+def test_monte_carlo_is_chosen_unless_it_costs_much_more(costs, chosen):
+    assert chosen_of(costs, "mc") == chosen
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "verdict"),
+    [(0.1, 0.5, "yes"), (0.1, 0.51, "unknown"), (0.5, 0.6, "unknown"), (0.51, 0.6, "no"), (0.0, 0.0, "yes")],
+)
+def test_an_error_between_two_bounds_beside_a_tolerance(low, high, verdict):
+    assert _verdict(low, high, 0.5) == verdict
 
 
 def with_errors(curve, change):
@@ -236,7 +311,7 @@ def test_runs_beside_a_jump_give_the_need_between_those_that_miss_and_those_that
     assert with_reach(small, bent) == pytest.approx(128 * 16**2, rel=0.15)
 
 
-def test_methods_within_a_fifth_or_a_tenth_of_a_second_tie(timed):
+def test_methods_of_a_study_tie(timed):
     found = choice(timed)
     least = min(each.seconds for each in found.needs.values() if each.usable)
     for curve, each in found.needs.items():

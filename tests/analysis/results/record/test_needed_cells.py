@@ -195,6 +195,28 @@ def test_a_name_of_one_sheet_says_so(book):
     assert structure(model) == [("defined name", "S!Rate", "S!$A$2")]
 
 
+@pytest.mark.parametrize(
+    ("function", "listed"),
+    [
+        ("SUBTOTAL(109,A2:A9)", [("hidden rows", "S", "3-5, 9")]),
+        ("AGGREGATE(9,5,A2:A9)", [("hidden rows", "S", "3-5, 9")]),
+        ("SUM(A2:A9)", []),
+    ],
+)
+def test_hidden_rows_are_told_of_sheets_that_are_read_where_a_function_asks_for_them(tmp_path, function, listed):
+    written = openpyxl.Workbook()
+    sheets = [written.active, written.create_sheet("T"), written.create_sheet("U")]
+    sheets[0].title = "S"
+    sheets[0]["B1"] = f'=RiskOutput("x")+RiskUniform(0,1)+{function}+T!A1'
+    for sheet, hidden in zip(sheets, ((3, 4, 5, 9), (), (2,)), strict=True):
+        for row in range(1, 11):
+            sheet.cell(row, 1).value = row
+        for row in hidden:
+            sheet.row_dimensions[row].hidden = True
+    written.save(tmp_path / "book.xlsx")
+    assert structure(load(tmp_path / "book.xlsx")) == listed
+
+
 def test_tables_are_those_that_the_cells_mention(book, table):
     model = book(
         {"A1": 1.0, "C1": "Low", "C2": 2.0, "B1": "=A1*SUM(Data[Low])"},

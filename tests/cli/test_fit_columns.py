@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
 
 import click
 import numpy as np
 import openpyxl
 import pytest
 
-from xlmc.cli.fit_columns import columns_of_csv, columns_of_range
+from xlmc.cli.fit_columns import _as_json, _pairs, _report, columns_of_csv, columns_of_range
 from xlmc.errors import DefinitionError, WorkbookError
+from xlmc.montecarlo.statistics import Estimate
 
 pytestmark = pytest.mark.usefixtures("fitted_once")
 
@@ -20,6 +22,45 @@ def in_a_command():
     """Reading a book sets the number style of the command that runs."""
     with click.Context(click.Command("fit")):
         yield
+
+
+def _copula(name, aic, turned=False, **parameters):
+    return SimpleNamespace(name=name, aic=aic, turned=turned, parameters=parameters)
+
+
+GAUSSIAN, CLAYTON = _copula("Gaussian", -10.0, r=0.5), _copula("Clayton", -12.25, theta=1.2345)
+
+
+@pytest.mark.parametrize(
+    ("copulas", "cells"),
+    [
+        ([CLAYTON, GAUSSIAN], ("Clayton", "theta 1.23", "2.2")),
+        ([GAUSSIAN, CLAYTON], ("Gaussian", "r 0.5", "0.0")),
+        ([CLAYTON], ("Clayton", "theta 1.23", "")),
+        ([_copula("t", -13.0, r=-0.25, freedom=4.0), GAUSSIAN], ("t", "r -0.25, freedom 4", "3.0")),
+        ([_copula("Gumbel", -13.0, turned=True, theta=2.0), GAUSSIAN], ("Gumbel, turned", "theta 2", "3.0")),
+    ],
+)
+def test_a_pair_of_columns_has_its_best_copula_and_how_far_the_gaussian_one_is_behind(copulas, cells):
+    pair = SimpleNamespace(first="a", second="b", n=1234, correlation=Estimate(0.5, 0.02), copulas=copulas)
+    [row] = _pairs(SimpleNamespace(pairs=[pair])).rows
+    assert row == ("a", "b", "1,234", "0.500 ± 0.020", *cells)
+    [found] = _as_json(SimpleNamespace(columns=[], pairs=[pair]), "book")["pairs"]
+    assert (found["first"], found["second"], found["rows"]) == ("a", "b", 1234)
+    assert [(each["name"], each["aic"], each["turned"]) for each in found["copulas"]] == [
+        (each.name, each.aic, each.turned) for each in copulas
+    ]
+
+
+@pytest.mark.parametrize(("count", "columns"), [(1, "1 column"), (2, "2 columns")])
+def test_what_is_said_of_columns_that_are_not_fitted(count, columns):
+    texts = SimpleNamespace(fitting=None, best=None, shares={"yes": Estimate(0.25, 0.01)}, name="t", why="")
+    other = SimpleNamespace(fitting=None, best=None, shares={}, name="u", why="it has 2 values")
+    found = _report(SimpleNamespace(columns=[texts, other][:count], pairs=[]), "data.csv")
+    assert found.below == f"data.csv: {columns}"
+    table, *others = found.blocks
+    assert (table.title, table.rows) == ("t: shares of its texts", (("yes", "25.0 ± 1.0 %"),))
+    assert [each.text for each in others] == ["Not fitted: u: it has 2 values."][: count - 1]
 
 
 @pytest.fixture

@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import pytest
 
 from xlmc.errors import DefinitionError
@@ -7,7 +9,7 @@ from xlmc.excel.address import Cell
 from xlmc.excel.formula import formula_text
 from xlmc.montecarlo.definitions.definitions import Filter
 from xlmc.montecarlo.definitions.evidence import Bell
-from xlmc.montecarlo.model.needed import accepted_by_chance, filter_condition, find_needed
+from xlmc.montecarlo.model.needed import MOST_CALLS, _refuse_too_many, accepted_by_chance, filter_condition, find_needed
 
 CELLS = {"A1": 1.0, "A2": 2.0, "A3": 3.0, "A4": 4.0, "B1": "=A1+A2", "B2": "=A3*2", "B3": "=B2+A4", "C1": "=B1>0"}
 UNIT = {"low": 0, "high": 1}
@@ -152,3 +154,11 @@ def test_trials_are_kept_by_chance(bell, chance, asked):
     cell = Cell("S", 1, 2)
     found = formula_text(accepted_by_chance(bell, cell, chance))
     assert found.replace(formula_text(bell.tree_of_chance(cell)), "CHANCE") == asked
+
+
+def test_a_run_draws_as_many_calls_in_cells_as_a_report_can_take():
+    call = SimpleNamespace(row=Cell("S", 1, 1))
+    _refuse_too_many([call] * MOST_CALLS)
+    with pytest.raises(DefinitionError, match="need 10,001 draws in cells; a run takes at most 10,000") as caught:
+        _refuse_too_many([call] * (MOST_CALLS + 1))
+    assert caught.value.hint

@@ -4,15 +4,55 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from fewer_sheets import leave_out_fits
 from simulated import simulated
 
 from xlmc.montecarlo.model.loading import load
+from xlmc.montecarlo.statistics import Estimate
 from xlmc.outputs.page import page_text
+from xlmc.outputs.page.second_run import _numbers
 
 BOOKS = Path(__file__).resolve().parents[3] / "examples"
+
+
+MEAN, SPREAD, LOW, HIGH, ABOVE, YES = (Estimate(float(value), 0.1) for value in range(6))
+
+
+def _row(**more):
+    usual = {"mean": MEAN, "standard_deviation": SPREAD, "low": LOW, "high": HIGH, "share": 0.9}
+    return SimpleNamespace(**{**usual, "yes": None, "above": ABOVE, "threshold": None, **more})
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "compared"),
+    [
+        ({}, {}, ["Mean", "Standard deviation", "Central 90 % from", "to"]),
+        ({"share": 0.9}, {"share": 0.8}, ["Mean", "Standard deviation"]),
+        (
+            {"threshold": 1.5},
+            {"threshold": 1.5},
+            ["Mean", "Standard deviation", "Central 90 % from", "to", "Above 1.5"],
+        ),
+        ({"threshold": 1.5}, {"threshold": 2.5}, ["Mean", "Standard deviation", "Central 90 % from", "to"]),
+        ({"threshold": 1.5}, {}, ["Mean", "Standard deviation", "Central 90 % from", "to"]),
+        (
+            {"threshold": 1.5, "above": None},
+            {"threshold": 1.5},
+            ["Mean", "Standard deviation", "Central 90 % from", "to"],
+        ),
+        ({"yes": YES}, {"yes": YES}, ["Yes"]),
+        ({"yes": YES}, {}, ["Mean", "Standard deviation", "Central 90 % from", "to"]),
+        ({}, {"yes": YES}, ["Mean", "Standard deviation", "Central 90 % from", "to"]),
+    ],
+)
+def test_which_numbers_of_two_runs_can_be_compared(first, second, compared):
+    values = {"Mean": MEAN, "Standard deviation": SPREAD, "Central 90 % from": LOW, "to": HIGH, "Yes": YES}
+    assert list(_numbers(_row(**first), _row(**second))) == [
+        (name, *[values.get(name, ABOVE)] * 2, name in ("Yes", "Above 1.5")) for name in compared
+    ]
 
 
 @pytest.fixture(scope="module")

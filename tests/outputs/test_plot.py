@@ -51,6 +51,33 @@ def test_the_curve_and_the_shade_are_the_runs(run, figure):
         assert (shade.get_x(), shade.get_x() + shade.get_width()) == pytest.approx((low.value, high.value))
 
 
+def test_the_mean_stands_over_the_bars_and_below_the_top(run, figure):
+    for axes, drawn, result in zip(figure.axes[::2], figures_of(run), run.results.values(), strict=True):
+        [mean] = axes.collections
+        [[(x, bottom), (top_x, top)]] = mean.get_segments()
+        most = max(drawn.bins.inside + drawn.bins.outside)
+        assert x == top_x == pytest.approx(result.mean.value)
+        assert (bottom, axes.get_ylim()[0]) == (0.0, 0.0)
+        assert most < top < axes.get_ylim()[1]
+        assert axes.get_ylim()[1] <= 2.0 * most
+        assert axes.get_xlim() == (drawn.bins.edges[0], drawn.bins.upper_edges[-1])
+        edges = axes.patches[0].get_data().edges
+        assert edges.tolist() == [*drawn.bins.edges, drawn.bins.upper_edges[-1]]
+        assert axes.get_ylabel() == f"Trials per {drawn.bins.form.width(drawn.bins.width)} ft"
+        assert not axes.texts
+        labels = [text.get_text() for text in axes.get_legend().get_texts()]
+        assert [label.partition(":")[0] for label in labels] == ["other accepted trials", "central 51 %", "mean"]
+
+
+def test_the_tails_beside_the_central_range_are_marked_on_the_curve(run, figure):
+    for axes, drawn in zip(figure.axes[1::2], figures_of(run), strict=True):
+        heights = [y for each in axes.collections for segment in each.get_segments() for y in segment[:, 1]]
+        assert heights == pytest.approx([24.5, 24.5, 75.5, 75.5])  # of 51 % in the middle
+        assert axes.get_ylim() == (0.0, 100.0)
+        assert axes.get_xlim() == (drawn.bins.edges[0], drawn.bins.upper_edges[-1])
+        assert axes.lines[0].get_data()[1].size == 1001
+
+
 def test_the_threshold_is_marked(figure):
     assert [text.get_text() for text in figure.axes[1].get_legend().get_texts()] == ["threshold 16"]
     assert figure.axes[3].get_legend() is None

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo import statistics
-from xlmc.montecarlo.columns import numbers
+from xlmc.montecarlo.columns import ascending, numbers
 from xlmc.montecarlo.statistics import Estimate
 
 if TYPE_CHECKING:
@@ -112,7 +112,7 @@ def shapes(
     prior: NDArray[np.float64], accepted: NDArray[np.float64], weights: NDArray[np.float64] | None = None
 ) -> Shapes | None:
     """Return the shapes of `(n,)` draws before filtering and of `(m,)` accepted ones; None if they are one value."""
-    before, after = numbers(prior), numbers(accepted)
+    before, after = ascending(numbers(prior)), numbers(accepted)
     w = None if weights is None else weights[~np.isnan(accepted)]
     if not before.size or not after.size or (w is not None and not w.any()):
         return None
@@ -121,7 +121,8 @@ def shapes(
         return None
     edges = np.linspace(low, high, _BINS + 1)
     shares = _counts(after, edges) / after.size if w is None else np.histogram(after, edges, weights=w)[0] / w.sum()
-    return Shapes(edges, _counts(before, edges) / before.size, shares)
+    cuts = [*np.searchsorted(before, edges[:-1]), np.searchsorted(before, edges[-1], side="right")]
+    return Shapes(edges, np.diff(cuts) / before.size, shares)
 
 
 def _counts(draws: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[np.int64]:
@@ -134,11 +135,11 @@ def _counts(draws: NDArray[np.float64], edges: NDArray[np.float64]) -> NDArray[n
 
 
 def _shown(draws: NDArray[np.float64]) -> tuple[float, float]:
-    """Return the ends of a picture of draws: all of them, but without long tails, which would leave the rest in one
-    bar.
+    """Return the ends of a picture of ascending draws: all of them, but without long tails, which would leave the rest
+    in one bar.
     """
     low, high = (float(end) for end in np.quantile(draws, (0.002, 0.998)))
-    least, most = float(draws.min()), float(draws.max())
+    least, most = float(draws[0]), float(draws[-1])
     return (least, most) if most - least <= _LONG * (high - low) else (low, high)
 
 

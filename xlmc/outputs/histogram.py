@@ -24,6 +24,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -74,7 +75,7 @@ _FINEST = 1e-9
 """The narrowest bin, as a share of the largest value: a finer one would show rounding."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Histogram:
     """Counts of trials in `b` bins of equal width.
 
@@ -106,8 +107,9 @@ class Histogram:
         """All trials, those that are not drawn among them; of weighted ones, as many as carry as much."""
         return int(self.inside.sum() + self.outside.sum()) + self.below + self.above
 
-    @property
+    @cached_property
     def upper_edges(self) -> Floats:
+        """`(b,)` upper ends; every label and format asks for them."""
         if self.names is not None:
             return np.asarray(self.edges + self.width)
         return multiples(self.width, round(float(self.edges[0] / self.width)) + 1, self.edges.size)

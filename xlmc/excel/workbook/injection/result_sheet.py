@@ -74,12 +74,12 @@ def at_home(xml: bytes, strings: Sequence[bytes], styles: StyleMap) -> bytes:
     Raises:
         ValueError: a cell has metadata (dynamic arrays, pictures in cells), which cannot be carried over.
     """
-    if _METADATA.search(xml):
+    if (b' cm="' in xml or b' vm="' in xml) and _METADATA.search(xml):  # the pattern looks at every cell
         raise ValueError("result sheets must not hold dynamic array formulas or pictures in cells")
     head, data, rest = xml.partition(b"<sheetData")
     body, end, tail = rest.partition(b"</sheetData>")
     head = _COLUMN_STYLE.sub(_put_number(styles.cells), _SELECTED.sub(rb"\1", head))
-    body = _cells(_ROW_STYLE.sub(_put_number(styles.cells), body), strings, styles.cells)
+    body = _cells(body, strings, styles.cells)
     return b"".join([head, data, body, end, with_differential(tail, styles)])
 
 
@@ -107,8 +107,11 @@ def rename_in_xml(xml: bytes, renames: Renames) -> bytes:
 
 
 def _cells(body: bytes, strings: Sequence[bytes], cells: Sequence[int]) -> bytes:
-    if not cells[0] and b"<f" not in body and b"<is" not in body and _STYLED_ROW.search(body) is None:
+    styled_rows = _STYLED_ROW.search(body) is not None
+    if not cells[0] and b"</f>" not in body and b"</is>" not in body and not styled_rows:
         return b"".join(_plain_cells(rows, strings, cells) for rows in _in_parts(body))
+    if styled_rows:
+        body = _ROW_STYLE.sub(_put_number(cells), body)
     # A cell without a style has the built workbook's first one, which need not be the user's first.
     style = [b' s="%d"' % number if number else b"" for number in cells]
 

@@ -249,3 +249,21 @@ def test_days_share_no_axis_with_times_of_day():
     )
     assert [len({each.axis for each in group}) for group in (days, spans, numbers)] == [1, 1, 1]
     assert len({each.axis for each in (days[0], spans[0], PLAIN, FORMS["percent"], FORMS["euros"])}) == 5
+
+
+@pytest.mark.parametrize(
+    ("form", "words"),
+    [("day", "before after not after"), ("time", "before after not after"), ("span", "below above at most"),
+     ("dollars", "below above at most")],
+)  # fmt: skip
+def test_one_day_is_before_another(form, words):
+    assert " ".join(FORMS[form].side(each) for each in ("below", "above", "at most")) == words
+
+
+@pytest.mark.parametrize(
+    ("code", "order"),
+    [("dd/mm/yyyy", "dmy"), ("m/d/yy h:mm", "mdy"), ("[$-409]d-mmm-yy", "dmy"), ("yyyy-mm-dd hh:mm", "ymd"),
+     ('dddd, "am" d. mmmm yyyy', "dmy"), ("mmm-yy", "ymd"), ("h:mm d.m.yy", "dmy")],
+)  # fmt: skip
+def test_a_format_says_in_which_order_days_are_typed(code, order):
+    assert Form(Kind.DATE, code).order == order

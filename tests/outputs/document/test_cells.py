@@ -9,7 +9,15 @@ from hypothesis import strategies as st
 from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.statistics import Estimate, format_estimate, proportion
-from xlmc.outputs.document.cells import _span_format, estimate, paired_format, share_format, shown_text, spread_format
+from xlmc.outputs.document.cells import (
+    _span_format,
+    estimate,
+    interval,
+    paired_format,
+    share_format,
+    shown_text,
+    spread_format,
+)
 
 PAIRED = [
     (11.79946, 0.01256, "#,##0.000"),
@@ -106,3 +114,14 @@ def test_a_span_below_a_day_is_in_hours(days, error, code):
 def test_a_time_before_the_first_one_is_a_number():
     shown, _ = estimate(Estimate(-0.25, 0.01), form=Form(Kind.DATE, "[h]:mm"))
     assert shown_text(shown) == "-0.25"
+
+
+def test_ends_of_an_interval_have_no_more_digits_than_the_error_where_no_sheet_shows_them():
+    found = Estimate(6.272e11, 1.4e9, (624_394_266_931.4, 629_696_104_000.2))
+    assert [each.written for each in interval(found)] == ["624,400,000,000", "629,700,000,000"]
+    assert [each.written for each in interval(found, form=Form(Kind.CURRENCY, "$0"))] == [
+        "$624,400,000,000",
+        "$629,700,000,000",
+    ]
+    assert [each.written for each in interval(Estimate(1.0, 0.02, (0.96, 1.04)))] == ["", ""]
+    assert [each.value for each in interval(Estimate(1.0, 25.0))] == ["–", "–"]

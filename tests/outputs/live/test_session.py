@@ -339,7 +339,7 @@ def test_dates_percentages_and_money_are_told_as_their_cells_show_them(tmp_path)
     start, discount, _ = state["assumptions"]
     assert [each["form"]["moment"] for each in (start, *start["numbers"], *state["filters"])] == ["day"] * 4
     assert (start["step"], state["filters"][0]["step"]) == (1.0, 1.0)
-    assert discount["form"] is None
+    assert (discount["form"]["factor"], discount["form"]["after"], discount["form"]["moment"]) == (100.0, " %", None)
     edited(tmp_path / "case.xlsx", tmp_path / "edited.xlsx", {("start", "Low"): 46_060.0, ("price", "Mean"): 5e4})
     told = what_changed(model, load(tmp_path / "edited.xlsx"))
     assert told == ["start: Low 2026-02-01 → 2026-02-07", "price: Mean $48,000 → $50,000"]

@@ -57,7 +57,7 @@ _FIRST_DATE: Final = 10_000.0
 """Days: from 1927 on. A smaller number in the row of a date is a span, such as its standard deviation."""
 
 _ENDS: Final = {"low", "high", "likeliest", "low_likeliest", "high_likeliest", "top", "bottom", "midpoint", *CUTOFFS}
-_OF_QUANTITY: Final = frozenset({*_ENDS, "mean", "std_dev", "location", "scale", "deductible", "limit"})
+_OF_QUANTITY: Final = frozenset({*_ENDS, "base", "mean", "std_dev", "location", "scale", "deductible", "limit"})
 """Parameters that are in the unit of what is drawn; others, such as shapes and rates, are not."""
 
 

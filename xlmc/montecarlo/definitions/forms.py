@@ -45,6 +45,7 @@ _DAY_AND_TIME: Final = "yyyy-mm-dd hh:mm"
 _SECONDS_A_DAY: Final = 86_400
 _TICK: Final = 6
 """Decimals of a number beside an axis; one that needs more has a power of ten."""
+_OF_DAYS: Final = {"below": "before", "above": "after", "at most": "not after", "at least": "not before"}
 _IN_PERCENT: Final = (Kind.PERCENT, Kind.YES_NO)
 _SECONDS: Final = (1, 2, 5, 10, 30, 60, 120, 300, 600, 1800, 3600, 7200, 21_600, 43_200)
 _DAYS: Final = (1, 2, 5, 10, 20, 50, 100, 200, 500, 1000, 5000, 10_000)
@@ -127,6 +128,10 @@ class Form:
             return "", ""
         # `#,##0,,"M €"` shows millions; the numbers here are whole ones, so that only the sign of money is true of them
         return (_money_in(before), _money_in(after)) if _SHORTENED.search(_QUOTED.sub("", first)) else (before, after)
+
+    def side(self, words: str) -> str:
+        """Say `below`, `above`, `at most` or `at least` as one does of such numbers: of days `before`, `after`."""
+        return _OF_DAYS[words] if self.kind is Kind.DATE and self.shows != "span" else words
 
     @property
     def axis(self) -> tuple[object, ...]:
@@ -299,6 +304,13 @@ class Form:
         if not re.search(r"[yd]", code):
             return "span"
         return "time" if re.search(r"[hs]", code) else "day"
+
+    @property
+    def order(self) -> str:
+        """The order in which the format shows year, month and day: `dmy`; `ymd` where it does not show all three."""
+        days = re.sub(r"h+\W*m+(?:\W*s+)?|m+\W*s+", "", self._bare_moment_code)
+        found = "".join(dict.fromkeys(re.findall(r"[ymd]", days)))
+        return found if len(found) == 3 else "ymd"
 
     @property
     def moment_code(self) -> str:

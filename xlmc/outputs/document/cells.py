@@ -158,8 +158,11 @@ def interval(found: Estimate, *, percent: bool = False, form: Form = PLAIN, spre
     digits = share_format(found) if percent else paired_format(found, form)
     if spread and form.kind is Kind.DATE:
         digits = _span_format(found.value, found.error)
-    low, high = found.interval or (None, None)
-    return [replace(_error(end, digits, "error"), date1904=form.date1904) for end in (low, high)]
+    shown = [replace(_error(end, digits, "error"), date1904=form.date1904) for end in found.interval or (None, None)]
+    decimals = None if percent or form.kind is Kind.DATE else _paired_decimals(found, form)
+    if decimals is None or decimals >= 0:
+        return shown
+    return [replace(e, written=form.number(e.value, decimals)) if isinstance(e.value, float) else e for e in shown]
 
 
 def _error(value: float | None, digits: str, look: str) -> Shown:

@@ -84,5 +84,5 @@ def _amount_text(key: str, value: Parameter | Amount, row: Assumption | Filter |
     if isinstance(value, Cell) or row is None:
         return f"{given_text(value)} %" if key == "central" else given_text(value)
     if isinstance(row, Assumption):
-        return row.form_of("low" if key == "base" else key, value).number(value)
+        return row.form_of(key, value).number(value)
     return row.form.number(value) if key in (*LIMITS, "reading", "value") else given_text(value)

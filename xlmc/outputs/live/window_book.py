@@ -130,7 +130,7 @@ def _assumption(
         "base": assumption.base,
         "ownBase": own.base,
         "step": max(step, 1.0) if isinstance(assumption.family, WholeNumbers) else _step_in(form, step),
-        "form": _moment_json(form),
+        "form": _box_form(form),
         "numbers": numbers,
         "band": None if assumption.data is not None else [changed.get(key, end) for key, end in BAND.items()],
         "changed": bool(changed),
@@ -175,13 +175,13 @@ def _handle(
         "drags": drags,
         "goes": key in REMOVABLE,
         "step": _step_in(form, _step(0.0, abs(value))) if isinstance(value, float | int) else 1.0,
-        "form": _moment_json(form),
+        "form": _box_form(form),
     }
 
 
-def _moment_json(form: Form) -> dict[str, Any] | None:
-    """Return how a date or a time is written and read; None for other numbers, which are as they can be typed."""
-    return form_json(form) if form.kind is Kind.DATE else None
+def _box_form(form: Form) -> dict[str, Any] | None:
+    """Return how a date, a percentage or an amount of money is written and read in a box; None for other numbers."""
+    return form_json(form) if form.kind in (Kind.DATE, Kind.PERCENT, Kind.CURRENCY) else None
 
 
 def _step_in(form: Form, step: float) -> float:
@@ -260,7 +260,7 @@ def _filter(filter_: Filter, own: Filter, definitions: Definitions, *, changed: 
         "says": says,
         "because": " · ".join(filter(None, (*_reach(filter_), filter_.because))),
         "step": _step_in(filter_.form, step),
-        "form": _moment_json(filter_.form),
+        "form": _box_form(filter_.form),
         "shape": shape,
         "changed": changed,
         "switches": filter_.name in definitions.switches,
@@ -380,7 +380,7 @@ def decision_rows(own: CompiledModel, adjustments: Adjustments) -> list[dict[str
                 "cell": str(each.cell),
                 "says": f"tried: {each.values_text}",
                 "numbers": [_handle("value", "Value", each.base, before.base, drags=True, form=each.form)],
-                "form": _moment_json(each.form),
+                "form": _box_form(each.form),
                 "ends": ends,
                 "tried": tried,
                 "choices": choices,

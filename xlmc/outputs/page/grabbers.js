@@ -57,11 +57,20 @@ function addGrabber(chart, which, label, grid, now, move) {
     const left = Math.min(chart.over.clientWidth, Math.max(0, chart.valToPos(value, "x")));
     line.style.left = `${value === -Infinity ? 0 : value === Infinity ? chart.over.clientWidth : left}px`;
     tag.textContent = text;
-    grip.setAttribute("aria-valuemin", String(grid.min));
-    grip.setAttribute("aria-valuemax", String(grid.max));
-    grip.setAttribute("aria-valuenow", String(Math.min(grid.max, Math.max(grid.min, value))));
+    keepWithin(tag, chart.root);
+    grip.setAttribute("aria-valuemin", decimalText(grid.min));
+    grip.setAttribute("aria-valuemax", decimalText(grid.max));
+    grip.setAttribute("aria-valuenow", decimalText(Math.min(grid.max, Math.max(grid.min, value))));
     grip.setAttribute("aria-valuetext", text);
   };
+}
+
+/** Move an element sideways where it reaches beyond another one. */
+function keepWithin(element, around) {
+  element.style.translate = "";
+  const [shown, room] = [element, around].map((each) => each.getBoundingClientRect());
+  const away = Math.max(room.left - shown.left, 0) + Math.min(room.right - shown.right, 0);
+  if (away) element.style.translate = `${away}px`;
 }
 
 /** The step that grabbers move in: a power of ten, at most a fifth of a bar; 1 where the trials are whole numbers. */

@@ -63,6 +63,11 @@ function valueText(value, decimals) {
   return styled(value.toFixed(Math.max(decimals, 0)), false);
 }
 
+/** A number with all of its digits and without a power of ten, which the attributes of a slider must not have. */
+function decimalText(value) {
+  return value.toLocaleString("en-US", { useGrouping: false, maximumSignificantDigits: 17 });
+}
+
 /** A number in so many digits at most, as it can be typed. */
 function shortText(value, digits) {
   return styled(String(Number(value.toPrecision(digits))), false);
@@ -98,19 +103,49 @@ function momentText(value, { moment, epoch }) {
   return moment === "day" ? at.slice(0, 10) : at.slice(0, 16).replace("T", " ");
 }
 
+const CLOCK = /^(\d+):(\d\d)(?::(\d\d))?(?:\s*([ap])m)?$/i;
+const MONTHS = ["jan", "feb", "mar", "apr", "may", "jun", "jul", "aug", "sep", "oct", "nov", "dec"];
+
+/** 14:30, 49:15 or 2:30 PM as a share of a day; null for anything else. */
+function clockTyped(text) {
+  const [, hours, minutes, seconds, half] = text.trim().match(CLOCK) ?? [];
+  if (hours === undefined || (half && !(hours >= 1 && hours <= 12))) return null;
+  const at = half ? (hours % 12) + (half.toLowerCase() === "p" ? 12 : 0) : Number(hours);
+  return (at + minutes / 60 + (seconds ?? 0) / 3600) / 24;
+}
+
+/** 2026-03-01, or 1 Mar 2026 and 01/03/2026 where the cell has its parts in the `order` dmy, as days since 1970. */
+function dayTyped(text, order) {
+  const parts = (text.match(/\d+|[a-z]+/gi) ?? []).filter((part) => !/^(?:mon|tue|wed|thu|fri|sat|sun)/i.test(part));
+  if (parts.length !== 3) return null;
+  const found = {};
+  [...(/^\d{4}$/.test(parts[0]) ? "ymd" : order)].forEach((which, i) => { found[which] = parts[i]; });
+  const named = MONTHS.indexOf(found.m.slice(0, 3).toLowerCase()) + 1;
+  const [year, month, day] = [found.y, named || found.m, found.d].map(Number);
+  const whole = found.y.length === 2 ? year + (year < 30 ? 2000 : 1900) : year; // as Excel reads two digits
+  const at = new Date(Date.UTC(whole, month - 1, day));
+  return at.getUTCMonth() === month - 1 && at.getUTCDate() === day ? at.getTime() / 86400000 : null;
+}
+
+/** A date, a time or both, as a serial number; null for anything else. */
+function momentTyped(text, { epoch, order = "ymd" }) {
+  const span = clockTyped(text);
+  if (span !== null) return span;
+  const [, date, time] = text.match(/^(.*?)(?:(?:T|\s+)(\d+:[\d:]+(?:\s*[ap]m)?))?$/i);
+  const [day, clock] = [dayTyped(date, order), time ? clockTyped(time) : 0];
+  return day === null || clock === null ? null : day + clock + epoch;
+}
+
 /** What was typed in the form of a forecast, as `typed` gives it: 32 % is 0.32, 2026-03-01 is a serial number. */
 function formTyped(text, open, form) {
   let plain = text.trim();
-  if (form.moment) {
-    const date = plain.match(/^(\d{4}-\d\d-\d\d)(?:[ T](\d\d:\d\d(?::\d\d)?))?$/);
-    if (date) return Date.parse(`${date[1]}T${date[2] ?? "00:00"}Z`) / 86400000 + form.epoch;
-    const span = plain.match(/^(\d+):(\d\d)(?::(\d\d))?$/);
-    if (span) return (Number(span[1]) + Number(span[2]) / 60 + Number(span[3] ?? 0) / 3600) / 24;
-    return typed(plain, open);
-  }
+  if (form.moment) return momentTyped(plain, form) ?? typed(plain, open);
+  if (plain.startsWith("=")) return typed(plain, open);
   for (const affix of [form.before, form.after].map((each) => each.trim()).filter(Boolean)) plain = plain.replace(affix, "");
+  if (form.factor === 1 && form.before + form.after && plain.endsWith("%")) return null;
   const value = typed(plain, open);
-  return value === null || !Number.isFinite(value) ? value : value / form.factor;
+  if (value === null || !Number.isFinite(value)) return value;
+  return Number((value / form.factor).toPrecision(15));
 }
 
 const MOST_TYPED = 200; // characters

@@ -180,10 +180,8 @@ def signs_json() -> dict[str, str]:
 def form_json(form: Form) -> dict[str, Any]:
     """How the script writes numbers of a forecast."""
     before, after = form.affixes
-    moment = None
-    if form.kind is Kind.DATE:
-        moment = form.shows
-    return {"factor": form.factor, "before": before, "after": after, "moment": moment, "epoch": form.epoch}
+    moment = {"moment": form.shows, "order": form.order} if form.kind is Kind.DATE else {"moment": None}
+    return {"factor": form.factor, "before": before, "after": after, **moment, "epoch": form.epoch}
 
 
 def _bins(figure: Figure) -> dict[str, Any]:

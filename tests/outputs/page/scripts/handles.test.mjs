@@ -35,6 +35,38 @@ test("dates are written and read as such", () => {
   assert.equal(typedRange("2026-03-01", read), null);
 });
 
+const PERCENT = { factor: 100, before: "", after: " %", moment: null };
+const MONEY = { factor: 1, before: "$", after: "", moment: null };
+
+test("percentages and money are written as their cells show them, and read so", () => {
+  for (const [value, step, form, text] of [[0.12, 0.001, PERCENT, "12.0 %"], [0.1234567, 0.001, PERCENT, "12.34567 %"], [0.05, 0.01, PERCENT, "5 %"],
+    [180000, 1000, MONEY, "$180,000"], [-1.25, 1, MONEY, "-$1.25"], [1e-9, 1e-10, PERCENT, "1e-7 %"]]) {
+    assert.equal(stepText(value, step, form), text);
+    if (!text.includes("e")) assert.equal(formTyped(text, null, form), value, text);
+  }
+  for (const [text, value] of [["12 %", 0.12], ["12%", 0.12], ["12", 0.12], ["=6%*2", 0.12], ["0.5 %", 0.005], ["twelve", null]]) {
+    assert.equal(formTyped(text, null, PERCENT), value, text);
+  }
+  for (const [text, value] of [["$1,200", 1200], ["1200", 1200], ["-$5", -5], ["12 %", null], ["=600*2", 1200]]) {
+    assert.equal(formTyped(text, null, MONEY), value, text);
+  }
+  const ends = (text, form) => { const found = typedRange(text, (part) => formTyped(part, null, form), form.factor === 100); return [found.low, found.high]; };
+  assert.deepEqual(ends("4 % to 12 %", PERCENT), [0.04, 0.12]);
+  assert.deepEqual(ends("12 % ± 1 %", PERCENT), [0.11, 0.13]);
+  assert.deepEqual(ends("$200 ± 10 %", MONEY), [180, 220]);
+  assert.deepEqual(ends("$180,000 to $200,000", MONEY), [180000, 200000]);
+});
+
+test("dates are read in the order of their cell, and times of day with AM and PM", () => {
+  const day = (order) => ({ ...DAYS, order });
+  for (const [text, order, value] of [["1 Mar 2026", "dmy", 46082], ["01/03/2026", "dmy", 46082], ["3/1/26", "mdy", 46082], ["March 1, 2026", "mdy", 46082],
+    ["Sun 1-Mar-26", "dmy", 46082], ["2026-03-01", "dmy", 46082], ["1 Mar 2026 6:00 AM", "dmy", 46082.25], ["2026-03-01 18:00", "ymd", 46082.75],
+    ["7:30 PM", "ymd", 19.5 / 24], ["12:00 AM", "ymd", 0], ["49:15", "ymd", 49.25 / 24]]) {
+    assert.ok(Math.abs(formTyped(text, null, day(order)) - value) < 1e-9, text);
+  }
+  for (const text of ["31/02/2026", "1 Mar", "13:00 PM", "soon", "99/99/9999"]) assert.equal(formTyped(text, null, day("dmy")), null, text);
+});
+
 test("two ends are read from one box", () => {
   const ends = (text) => { const found = typedRange(text); return found && [found.low, found.high]; };
   for (const text of ["0.6 to 0.8", "0.8 to 0.6", "0.6 … 0.8", "0.6..0.8", "0.6–0.8", "0.7 ± 0.1", "0.7 +/- 0.1", "0.7 +- 0.1",

@@ -6,7 +6,7 @@ import { test } from "node:test";
 import { runInThisContext } from "node:vm";
 
 runInThisContext(readFileSync(new URL("../../../../xlmc/outputs/page/numbers.js", import.meta.url), "utf8"));
-/* global SIGNS, computed, countText, countedText, decimalsOf, estimateText, formText, percentText, plainNumber, typed, whyNoNumber */
+/* global SIGNS, computed, countText, countedText, decimalText, decimalsOf, estimateText, formText, percentText, plainNumber, typed, whyNoNumber */
 
 const PLAIN = { factor: 1, before: "", after: "" };
 
@@ -81,4 +81,9 @@ test("what is computed follows Excel's order", () => {
     assert.equal(computed(text), value, text);
   }
   for (const text of ["", "2+", "(2", "2 3", "A1", "1//2"]) assert.ok(Number.isNaN(computed(text)), text);
+});
+
+test("a slider's numbers have no power of ten", () => {
+  for (const [value, text] of [[1e-9, "0.000000001"], [2.64382112080697e-9, "0.00000000264382112080697"], [1.5e21, "1500000000000000000000"],
+    [-0.25, "-0.25"], [0, "0"], [1234567.5, "1234567.5"]]) assert.equal(decimalText(value), text);
 });

@@ -17,6 +17,7 @@ from xlmc.analysis.results.statements.significant_digits import (
     rounded_range,
     surely_above,
 )
+from xlmc.montecarlo.definitions.forms import Form
 from xlmc.montecarlo.definitions.stating import Kind, Role
 from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
 from xlmc.montecarlo.distributions.parameters import range_text
@@ -281,27 +282,27 @@ def certainties(result: ForecastResult) -> list[Certainty]:
     definition, sample = result.definition, result.sample
     units = f" {definition.units}" if definition.units else ""
     spoken = None if result.yes is not None else stated_range(result)
-    found = [] if spoken is None else _around(spoken, sample, units)
+    found = [] if spoken is None else _around(spoken, sample, result.form, units)
     threshold, above = definition.threshold, result.statistics.probability_above
     if threshold is not None and above is not None and sample.n:
         at_most = probability_between(sample, -math.inf, threshold)
-        limit = result.form.number(threshold)
-        found.append(Certainty("at most", -math.inf, threshold, f"at most {limit}{units}", at_most))
-        found.append(Certainty("over", threshold, math.inf, f"above {limit}{units}", above))
+        form, limit = result.form, f"{result.form.number(threshold)}{units}"
+        found.append(Certainty("at most", -math.inf, threshold, f"{form.side('at most')} {limit}", at_most))
+        found.append(Certainty("over", threshold, math.inf, f"{form.side('above')} {limit}", above))
     if definition.asked is not None and result.certainty is not None:
         words = f"{range_text(*definition.asked, result.form.number)}{units}"
         found.append(Certainty("asked", *definition.asked, words, result.certainty))
     return found
 
 
-def _around(spoken: RoundedRange, sample: Sample, units: str) -> list[Certainty]:
+def _around(spoken: RoundedRange, sample: Sample, form: Form, units: str) -> list[Certainty]:
     """Return the certainties below, in and above a range; below or above alone beside one that has no other end."""
     low, high = spoken.low, spoken.high
     found = [Certainty("between", low, high, spoken.words(units), spoken.share)]
     if spoken.low_text:
         under = probability_between(sample, -math.inf, math.nextafter(low, -math.inf))
-        found.insert(0, Certainty("below", -math.inf, low, f"below {spoken.low_text}{units}", under))
+        found.insert(0, Certainty("below", -math.inf, low, f"{form.side('below')} {spoken.low_text}{units}", under))
     if spoken.high_text:
         over = probability_above(sample, high)
-        found.append(Certainty("above", high, math.inf, f"above {spoken.high_text}{units}", over))
+        found.append(Certainty("above", high, math.inf, f"{form.side('above')} {spoken.high_text}{units}", over))
     return found

@@ -7,11 +7,15 @@ const KNOB_SIDE = { low: "lower", lower_cutoff: "lower", at_least: "lower", abov
   high: "upper", upper_cutoff: "upper", at_most: "upper", below: "upper" };
 const WIDE = 100, TALL = 26;
 
-/** A number with the decimals of its step, and no more than it has; a date or a time in its form. */
+/** A number with the decimals of its step, and no more than it has; dates, percentages and money in their form. */
 function stepText(value, step, form = null) {
   if (value === null || value === undefined) return "";
-  if (form) return momentText(value, form);
+  if (form?.moment) return momentText(value, form);
   const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  if (form) {
+    const known = decimalText(Number((value * form.factor).toPrecision(12))).split(".")[1]?.length ?? 0;
+    return formText(value, Math.max(decimals, known + Math.round(Math.log10(form.factor))), form);
+  }
   const rounded = Number(value.toFixed(Math.min(decimals, 12)));
   return Math.abs(rounded - value) <= 1e-9 * Math.abs(value) ? valueText(value, decimals) : shortText(value, 12);
 }
@@ -49,7 +53,7 @@ class Track {
    */
   update({ numbers, step, shape, own, mark, off, ticks = [], form = null }) {
     Object.assign(this, { numbers, step, shape, own, mark, off, ticks, form });
-    this.ends.classList.toggle("dated", Boolean(form));
+    this.ends.classList.toggle("dated", Boolean(form?.moment));
     if (this.held === null) this.fit();
     for (const number of numbers) this.place(this.knob(number), number);
     for (const [key, knob] of this.knobs) {
@@ -75,7 +79,7 @@ class Track {
     if (!good) this.axis = [low - 0.3 * span, high + 0.3 * span];
     const [first, last] = this.axis;
     const decimals = Math.min(12, decimalsOf(10 ** Math.floor(Math.log10(last - first) - 1))); // the ends differ as they are shown
-    const shown = this.axis.map((end) => this.form ? momentText(end, this.form) : styled(`${Number(end.toFixed(decimals))}`, false));
+    const shown = this.axis.map((end) => this.form ? formText(end, decimals, this.form) : styled(`${Number(end.toFixed(decimals))}`, false));
     [...this.ends.children].forEach((place, i) => { place.textContent = shown[i]; });
   }
 
@@ -107,9 +111,9 @@ class Track {
     if (value === null) return;
     const [least, most] = this.axis;
     knob.style.left = `${this.at(value)}%`;
-    knob.setAttribute("aria-valuemin", String(Math.min(least, value)));
-    knob.setAttribute("aria-valuemax", String(Math.max(most, value)));
-    knob.setAttribute("aria-valuenow", String(value));
+    knob.setAttribute("aria-valuemin", decimalText(Math.min(least, value)));
+    knob.setAttribute("aria-valuemax", decimalText(Math.max(most, value)));
+    knob.setAttribute("aria-valuenow", decimalText(value));
     knob.setAttribute("aria-valuetext", `${stepText(value, this.step, this.form)}${this.units ? ` ${this.units}` : ""}`);
     knob.setAttribute("aria-disabled", String(Boolean(this.off)));
   }
@@ -217,15 +221,16 @@ const AROUND = /^(.+?)\s*(?:±|\+\/?-)\s*(.+)$/;
 
 /**
  * Two ends in one box, 0.6 to 0.8 or 0.7 ± 10 %: `low`, `high` and with ± `middle`; null where it is no range. `read`
- * gives the number that a text is; null for none.
+ * gives the number that a text is; null for none. Of percentages ± 1 % is one of them, not a part of the middle.
  */
-function typedRange(text, read = (part) => typed(part, null)) {
+function typedRange(text, read = (part) => typed(part, null), percentages = false) {
   const plain = text.trim();
   const [, first, second] = (plain.startsWith("=") ? null : plain.match(AROUND) ?? plain.match(BETWEEN)) ?? [];
-  if (first === undefined || read(first) === null || read(second) === null) return null;
-  const [a, b] = [read(first), read(second)];
+  if (first === undefined) return null;
+  const share = AROUND.test(plain) && second.endsWith("%") && !percentages;
+  const [a, b] = [read(first), share ? typed(second, null) : read(second)];
+  if (a === null || b === null) return null;
   if (!AROUND.test(plain)) return { low: Math.min(a, b), high: Math.max(a, b), middle: null };
-  const share = second.endsWith("%");
   const off = Math.abs(share ? (a * b) / 100 : b);
   return { low: Number((a - off).toPrecision(12)), high: Number((a + off).toPrecision(12)), middle: a, share };
 }
@@ -270,7 +275,7 @@ class NumberBox {
     this.input.disabled = off;
     this.input.title = why ? `Computed: ${why}; type a number to replace it` : this.hint;
     this.input.classList.toggle("computed", Boolean(why));
-    this.input.classList.toggle("dated", Boolean(form));
+    this.input.classList.toggle("dated", Boolean(form?.moment));
   }
 
   /** Say why what was typed is not taken; nothing where it is. */
@@ -290,14 +295,14 @@ class NumberBox {
     }
     const { form } = this;
     const read = (part) => (form ? formTyped(part, null, form) : typed(part, null));
-    const range = typedRange(text, read);
+    const range = typedRange(text, read, form?.factor === 100);
     if (range) {
       this.refuse(this.setRange ? this.setRange(range) : "Type one number here.");
       return;
     }
     const value = read(text);
     if (value === null || !Number.isFinite(value)) {
-      this.refuse(form ? WHICH_MOMENT[form.moment] : whyNoNumber(text));
+      this.refuse(form?.moment ? WHICH_MOMENT[form.moment] : whyNoNumber(text));
       return;
     }
     const share = !form && text.trim().endsWith("%") && !text.trim().startsWith("=") && !this.percent;

@@ -16,6 +16,7 @@ import pytest
 from click.testing import CliRunner
 from kinds_book import FORECASTS, write_book
 from openpyxl.worksheet.table import Table
+from workbook_files import add_tables
 
 from xlmc.analysis.results.saved import open_run
 from xlmc.analysis.studies.methods import STATISTICS, recommendation, study
@@ -24,10 +25,12 @@ from xlmc.api import load
 from xlmc.cli import xlmc
 from xlmc.montecarlo.model.loading import load as load_model
 from xlmc.montecarlo.statistics import format_estimate
+from xlmc.outputs.document.content.answers import answer_tables
+from xlmc.outputs.document.parts import cell_text
 from xlmc.outputs.live.frames import frame_of
 from xlmc.outputs.methods.methods_json import study_json
 from xlmc.outputs.methods.methods_tables import bounds_table, forecast_table, reference_table
-from xlmc.outputs.summary import summarise, summary_text
+from xlmc.outputs.summary import mean_heading, summarise, summary_text
 
 KINDS = {
     "Speed": "number",
@@ -156,7 +159,7 @@ def test_the_table_prints_the_json_to_its_digits(outputs, name):
     run, document, _ = outputs
     told, row = forecast(document, name), table(run)[name]
     mean, spread = told["statistics"]["mean"], told["statistics"]["standard_deviation"]
-    check(row["Mean"], mean["value"], mean["error"])
+    check(row["Mean or share"], mean["value"], mean["error"])
     check(row["SD"], spread["value"], spread["error"])
     ends = next(row[key] for key in row if key.endswith("range")).split(" to ")
     for text, end in zip(ends, ("low", "high"), strict=True):
@@ -171,7 +174,7 @@ def test_dates_are_dates(outputs):
     run, document, folder = outputs
     told, row = forecast(document, "End"), table(run)["End"]
     day = date(1899, 12, 30) + timedelta(days=int(told["statistics"]["mean"]["value"]))
-    assert row["Mean"].startswith(f"{day} ± ")
+    assert row["Mean or share"].startswith(f"{day} ± ")
     assert row["SD"].endswith(" days")
     assert row["Base case"] == "2026-05-30"
     assert row["Threshold"] == "2026-06-07"
@@ -189,7 +192,7 @@ def test_yes_and_no_are_shares_with_exact_bounds(outputs):
     assert rows["Avoided"]["SD"] == rows["Never"]["SD"] == ""
     trials = document["trials"]["accepted"]
     assert forecast(document, "Never")["yes"]["value"] == 0.0
-    assert rows["Never"]["Mean"].startswith("0 %, at most 0.")
+    assert rows["Never"]["Mean or share"].startswith("0 %, at most 0.")
     assert f"Never: yes in 0 of {trials:,} trials; at most" in "\n".join(run.sentences)
 
 
@@ -254,7 +257,7 @@ def test_the_column_kind_overrides(tmp_path):
     run = load(write_book(tmp_path / "book.xlsx", filtered=False, kinds=kinds)).simulate(trials=500)
     assert {name: run[name].kind.value for name in kinds} == kinds
     assert {"1", "2", "3"} <= set(run["Events"].categories)
-    assert "$" not in table(run)["Cost"]["Mean"]
+    assert "$" not in table(run)["Cost"]["Mean or share"]
 
 
 @pytest.mark.parametrize("jobs", [1, 2])
@@ -421,3 +424,20 @@ def test_a_text_that_is_another_in_every_trial_fills_no_output(tmp_path):
         rows = [row for row in results[name].iter_rows(values_only=True) if row[column - 1] == said]
         assert [row[column] for row in rows] == [left], name
         assert results[name].max_row < 100, name
+
+
+def test_shares_are_called_so_and_have_no_range(tmp_path):
+    path = write_book(tmp_path / "book.xlsx", filtered=False)
+    book = openpyxl.load_workbook(path)
+    sheet = book["Tables"]
+    sheet.tables.pop("xlmc_forecasts")
+    rows = [["Name", "Cell", "Range %"], ["Speed", "=Model!B10", 80], ["Rate", "=Model!B13", None]]
+    rows += [["Avoided", "=Model!B15", None], ["Verdict", "=Model!B17", None]]
+    add_tables(book.create_sheet("Asked"), {"xlmc_forecasts": rows})
+    book.save(path)
+    run = load(path).simulate(trials=500)
+    table = next(answer_tables(run._run))
+    assert (table.heads[3], table.heads[-1]) == ("Mean or share", "Range holds")
+    assert [cell_text(row[-1]) for row in table.rows] == ["80 %", "51 %", "–", "–"]
+    rows = summarise(run._run)
+    assert (mean_heading(rows[:2]), mean_heading(rows[2:]), mean_heading(rows)) == ("Mean", "Share", "Mean or share")

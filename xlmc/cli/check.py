@@ -237,7 +237,7 @@ def _show_need(model: CompiledModel, workbook: Workbook) -> None:
     count = sum(cell in varying for cell in needed)
     counted = (
         f"Of {count_text(formulas)} formula cells the forecasts and filters need {count_text(len(needed))}; "
-        f"{count_text(count)} vary with an assumption."
+        f"{count_text(count)} {'varies' if count == 1 else 'vary'} with an assumption."
     )
     say(paragraph(counted))
     if model.needed.idle:

@@ -247,7 +247,8 @@ def _acceptance_sentence(run: RunResult) -> str:
     if run.weighting is not None and run.accepted == run.trials:
         return f"No trial is rejected: the evidence weights all {count_text(run.trials)}"
     if not run.model.filters and run.accepted == run.trials:
-        return f"The workbook has no filters: all {count_text(run.trials)} trials are accepted"
+        every = f"all {count_text(run.trials)} trials are" if run.trials > 1 else "the only trial is"
+        return f"The workbook has no filters: {every} accepted"
     return f"Accepted {count_text(run.accepted)} of {count_text(run.trials)} trials, {share_text(run.acceptance)}"
 
 

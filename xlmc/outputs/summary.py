@@ -45,6 +45,7 @@ __all__ = [
     "estimate_text",
     "first_forecasts",
     "frequent_texts",
+    "mean_heading",
     "question",
     "range_heading",
     "rejection_rows",
@@ -176,20 +177,19 @@ def summary_text(rows: Sequence[SummaryRow]) -> tuple[list[str], list[list[str]]
 
     Every number has its standard error and no more digits than that supports.
     """
-    heading = range_heading(rows)
-    lines = [_line(row, heading) for row in rows]
+    lines = [_line(row, mean_heading(rows), range_heading(rows)) for row in rows]
     headings = list(lines[0]) if lines else ["Forecast"]
     used = [name for name in headings if name == "Forecast" or any(line[name] for line in lines)]
     return used, [[line[name] for name in used] for line in lines]
 
 
-def _line(row: SummaryRow, heading: str) -> dict[str, str]:
+def _line(row: SummaryRow, mean: str, heading: str) -> dict[str, str]:
     threshold = "" if row.threshold is None else row.form.number(row.threshold)
     spread, low, _ = row.spread
     return {
         "Forecast": row.name,
         "Units": row.unit,
-        "Mean": answer_text(row),
+        mean: answer_text(row),
         "SD": row.form.spread(spread),
         heading: "" if math.isnan(low.value) else central_text(row),
         "Range": "" if heading != MIXED or math.isnan(low.value) else percent(row.share),
@@ -242,6 +242,12 @@ def beside_mean(value: float, row: SummaryRow) -> str:
 def with_units(name: str, units: str) -> str:
     """Return a name, with its units behind it where it has some: `Speed (mph)`."""
     return f"{name} ({units})" if units else name
+
+
+def mean_heading(rows: Sequence[SummaryRow]) -> str:
+    """`Mean`; of yes/no answers and texts `Share`; `Mean or share` where forecasts have either."""
+    found = {row.is_share for row in rows}
+    return "Mean or share" if len(found) > 1 else "Share" if True in found else "Mean"
 
 
 def range_heading(rows: Sequence[SummaryRow]) -> str:

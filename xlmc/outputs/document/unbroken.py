@@ -1,4 +1,4 @@
-"""Spaces at which no line is broken: between a number and its percent sign, its unit or its error."""
+"""Spaces at which no line is broken: between a number and its percent sign, its unit, its money or its error."""
 
 from __future__ import annotations
 
@@ -23,8 +23,8 @@ def in_units(units: Iterable[str]) -> Iterator[None]:
     ['51\xa0%', 'lie', 'below', '34.5', '±\xa00.3\xa0mph', 'or', '20\xa0€']
     """
     known = "|".join(map(re.escape, sorted({each.strip() for each in units} - {""}, key=len, reverse=True)))
-    behind = rf"(?<=[0-9]) (?=(?:[%€£$]{f'|{known}' if known else ''})(?!\w))"
-    token = _WHERE.set(re.compile(rf"{behind}|(?<=±) (?=[0-9])"))
+    behind = rf"(?<=[0-9]) (?=(?:[%€£$¥]|days?|h|min|s{f'|{known}' if known else ''})(?!\w))"
+    token = _WHERE.set(re.compile(rf"{behind}|(?<=[±€£$¥]) (?=[0-9])"))
     try:
         yield
     finally:

@@ -75,3 +75,17 @@ def test_ends_have_one_number_of_decimals_and_constants_no_noise():
 
 def test_without_trials_there_is_no_range():
     assert rounded_range(Sample.of([]), statistics.central_interval([]), 0.51) is None
+
+
+@pytest.mark.parametrize(
+    ("low", "high", "texts"),
+    [
+        (1.0, 2.25, ("1.00", "2.25")),
+        (0.905172413793, 1.09482758621, ("0.90517", "1.09483")),
+        (105.0, 127.0, ("105", "127")),
+    ],
+)
+def test_two_ends_without_an_error_have_as_many_decimals(low, high, texts):
+    values = np.array([low] * 40 + [high] * 60)
+    found = rounded_range(Sample.of(values), (Estimate(low, 0.0), Estimate(high, 0.0)), 0.9)
+    assert (found.low_text, found.high_text) == texts

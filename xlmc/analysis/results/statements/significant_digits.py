@@ -112,7 +112,7 @@ class _Rounding:
 
     def range(self, steps: Steps) -> RoundedRange:
         """Return the range with its ends so many steps out."""
-        low, high = self._end(0, steps[0]), self._end(1, steps[1])
+        low, high = self._alike(self._end(0, steps[0]), self._end(1, steps[1]))
         first, last = -math.inf if low is None else float(low), math.inf if high is None else float(high)
         share = probability_between(self.sample, first, max(first, last))
         first_text, last_text = ("" if end is None else _text(end, self.form) for end in (low, high))
@@ -123,11 +123,26 @@ class _Rounding:
         if end is None:
             return None
         if steps is None:
-            return _round(end.value, self.unit, ROUND_HALF_EVEN)
+            return _round(end.value, self.unit or self._six_digits, ROUND_HALF_EVEN)
         if self.unit is None:
             whole = self.sample.x[(0, -1)[side]]
-            return _round(float(whole) if steps else end.value, None, outwards)
+            return _round(float(whole) if steps else end.value, self._six_digits, outwards)
         return _round(end.value, self.unit, outwards) + (-1, 1)[side] * steps * self.unit
+
+    @property
+    def _six_digits(self) -> Decimal | None:
+        """The last of six digits of the larger of two ends without an error; None for one end."""
+        sizes = [_size(end.value) for end in self.ends if end is not None]
+        return (
+            Decimal(1).scaleb(max(sizes) + 1 - _DIGITS) if len(sizes) > 1 and max(map(abs, sizes)) < _WIDEST else None
+        )
+
+    def _alike(self, low: Decimal | None, high: Decimal | None) -> tuple[Decimal | None, Decimal | None]:
+        """Write two ends without an error with as few decimals as both need."""
+        if self.unit is not None or low is None or high is None or self._six_digits is None:
+            return low, high
+        unit = Decimal(1).scaleb(min(0, *(int(end.normalize().as_tuple().exponent) for end in (low, high))))
+        return low.quantize(unit), high.quantize(unit)
 
     def is_whole(self, found: RoundedRange) -> bool:
         """Whether the range holds every trial."""

@@ -24,6 +24,7 @@ from xlmc.outputs.summary import (
     end_texts,
     error_sentence,
     frequent_texts,
+    mean_heading,
     question,
     range_heading,
     summarise,
@@ -121,11 +122,11 @@ def _counted_answers(rows: Sequence[SummaryRow]) -> Table:
 
 def _is_mixed(rows: Sequence[SummaryRow]) -> bool:
     """Whether forecasts have ranges that hold different shares of the trials."""
-    return len({row.share for row in rows}) > 1
+    return len({row.share for row in rows if not row.is_share}) > 1
 
 
 def _heads(rows: Sequence[SummaryRow]) -> list[str]:
-    heads = ["Mean", "Standard deviation", f"{range_heading(rows)} from", "to", "Base case"]
+    heads = [mean_heading(rows), "Standard deviation", f"{range_heading(rows)} from", "to", "Base case"]
     return [*heads, "Range holds"] if _is_mixed(rows) else heads
 
 
@@ -142,7 +143,7 @@ def _numbers(row: SummaryRow, mixed: bool) -> Iterator[Content]:
     base = base_text(row)
     yield Shown(base) if row.is_share else replace(cells.exact(row.base, row.form, row.mean), written=base)
     if mixed:
-        yield Shown(percent(row.share))
+        yield Shown(NONE if row.is_share else percent(row.share))
 
 
 def _texts(rows: Sequence[SummaryRow]) -> Iterator[Table]:

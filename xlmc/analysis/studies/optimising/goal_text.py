@@ -51,7 +51,7 @@ _STATISTIC: Final = re.compile(
     re.IGNORECASE,
 )
 _RELATION: Final = re.compile(r">=|<=|=>|=<|≥|≤|>|<|==?")
-_LIMIT: Final = re.compile(r"\s*(?P<word>above|over|below|under|at least|at most|between|is)\b\s*", re.IGNORECASE)
+_LIMIT: Final = re.compile(r"\s*(?P<word>above|over|below|under|at\s+least|at\s+most|between|is)\b\s*", re.IGNORECASE)
 _AND: Final = re.compile(r"\s*(?:and|to)\s+", re.IGNORECASE)
 _SPELT: Final = {"=>": ">=", "=<": "<=", "≥": ">=", "≤": "<=", "above": ">", "over": ">", "below": "<", "under": "<"}
 _SPELT_AT: Final = {"at least": ">=", "at most": "<="}
@@ -304,7 +304,8 @@ class _Parsing:
         limit = self._match(_LIMIT)
         word = "" if limit is None else " ".join(limit["word"].casefold().split())
         sign = self._match(_RELATION) if by_sign and limit is None else None
-        if word == "is" or (sign is not None and sign[0].startswith("=")):
+        spelt = "" if sign is None else _SPELT.get(sign[0], sign[0])
+        if word == "is" or spelt.startswith("="):
             text = self._text_of(forecast.name, is_text)
             return Term(factor, lambda x: share_of_hits(x == 1.0), self._reader.column(number, text))
         if is_text:
@@ -317,9 +318,8 @@ class _Parsing:
                 raise self._wrong("a range has two ends", 'Such as "between 0 and 10"')
             high = self._signed_number()
             return Term(factor, lambda x: share_of_hits((x >= low) & (x <= high)), at)
-        if word or sign is not None:
-            spelt = _SPELT_AT.get(word) or _SPELT.get(word) or ("" if sign is None else _SPELT.get(sign[0], sign[0]))
-            bound, compare = self._signed_number(), _COMPARES[spelt]
+        if word or spelt:
+            bound, compare = self._signed_number(), _COMPARES[spelt or _SPELT_AT.get(word) or _SPELT[word]]
             return Term(factor, lambda x: share_of_hits(compare(x, bound)), at)
         if forecast.name in self._reader.model.two_valued or forecast.kind is Kind.YES_NO:
             return Term(factor, lambda x: share_of_hits(x != 0.0), at)

@@ -104,6 +104,14 @@ def test_ten_trials_that_hold_half_of_the_fourth_powers():
     assert decides_spread(x, mean, scale, kurtosis)
 
 
+@pytest.mark.parametrize("unit", [1e-200, 1e-10, 1.0, 1e10, 1e200])
+@pytest.mark.parametrize(("shape", "decides"), [(1 / 3, True), (1 / 30, False)])
+def test_the_unit_of_a_spread_does_not_matter(unit, shape, decides):
+    u = (np.arange(4_000) + 0.5) / 4_000
+    x = np.sort((1.0 - u) ** -shape)
+    assert decides_spread(unit * x, unit * x.mean(), unit * x.std(), 9.0) is decides
+
+
 @pytest.mark.parametrize(("factor", "decides"), [(0.99, False), (1.01, True)])
 def test_a_kurtosis_that_a_normal_forecast_may_have_decides_nothing(factor, decides):
     x = pareto(3.0, 40_000)

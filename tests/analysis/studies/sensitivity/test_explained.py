@@ -9,7 +9,7 @@ import pytest
 from simulated import simulated
 
 from xlmc.analysis.studies.sensitivity import sensitivities
-from xlmc.analysis.studies.sensitivity.explained import explained
+from xlmc.analysis.studies.sensitivity.explained import _beside_neighbours, _Fit, explained
 from xlmc.analysis.studies.sensitivity.given_data import explained_share
 from xlmc.analysis.studies.sensitivity.pull_errors import Units
 from xlmc.analysis.studies.sensitivity.ranked import Ranked
@@ -108,3 +108,33 @@ def test_in_a_workbook(book, formula, ends, truth, sampling):
     low, high = first.explained.interval
     assert low <= truth <= high + 1e-9
     assert first.explained.value == pytest.approx(truth, abs=0.03)
+
+
+@pytest.mark.parametrize("rung", [0, -1], ids=["coarse", "of eight trials"])
+@pytest.mark.parametrize("spread", [1.0, 0.5])
+def test_of_noise_alone_nothing_is_explained_and_its_fourth_power_is_right_on_average(rung, spread):
+    """Normal noise of variance σ² about lines: E of the estimate of σ⁴ is σ⁴, and of the share 1 - σ²."""
+    rng, n = np.random.default_rng(3), 256
+    ranked = Ranked.of(np.arange(n, dtype=float))
+    classes = ranked.ladder[rung]
+    line = np.sqrt(1.0 - spread**2) * np.linspace(-1.0, 1.0, n) * math.sqrt(3.0)
+    fits = [_Fit(classes, line + spread * rng.normal(size=n)) for _ in range(4_000)]
+    fourth, left = (np.array(each) for each in zip(*((fit.fourth, fit.left.sum()) for fit in fits), strict=True))
+    assert abs(fourth.mean() - spread**4) < 4 * fourth.std() / math.sqrt(fourth.size)
+    assert abs(left.mean() / (n - classes.freedom) - spread**2) < 4 * left.std() / math.sqrt(left.size) / (
+        n - classes.freedom
+    )
+    value = np.array([fit.value for fit in fits])
+    assert abs(value.mean() - (1.0 - spread**2 * (n - 1) / n)) < 4 * value.std() / math.sqrt(value.size)
+
+
+def test_neighbours_in_rank_explain_what_is_smooth_and_no_noise():
+    """A trial less the mean of its neighbours has 3/2 of the variance of noise (Gasser et al. 1986)."""
+    rng = np.random.default_rng(4)
+    found = [_beside_neighbours(rng.normal(size=500)) for _ in range(2_000)]
+    assert abs(np.mean(found)) < 4 * np.std(found) / math.sqrt(2_000)
+    # its variance: 35/9 - 2 above that of the variance itself, whose own is 2/n
+    assert np.var(found) * 500 == pytest.approx(35 / 9, rel=0.15)
+    assert _beside_neighbours(np.linspace(-1, 1, 50)) == pytest.approx(1.0)
+    assert _beside_neighbours(np.array([1.0, -1.0])) == -math.inf
+    assert _beside_neighbours(np.array([1.0, 0.0, -1.0])) == pytest.approx(1.0)

@@ -7,11 +7,11 @@
 A mutant differs from the code in one place: a comparison, an operator, `and` or `or`, a number, True or False, a `not`.
 It is made in a copy of the repository. pytest runs the examples in the module and the test file of its own, if there
 are any; then tests near by that import it, the own tests of modules near by that import it, the folder that mirrors its
-own, and the files in the folder above, until a test fails or the processor time is up: that of pytest and its children,
-so that a busy machine decides nothing. In the end every test that killed a mutant is run without one: where it fails
-even so, it killed nothing. Survivors are printed with file, line and what was changed: some change nothing that anybody
-could see, and the others ask for a test. This takes a minute for a mutant at most, so it is no part of `.ci/run`;
-Ctrl-C ends it with what is known by then.
+own, and the files in the folder above, those that killed most so far first, until a test fails or the processor time is
+up: that of pytest and its children, so that a busy machine decides nothing. In the end every test that killed a mutant
+is run without one: where it fails even so, it killed nothing. Survivors are printed with file, line and what was
+changed: some change nothing that anybody could see, and the others ask for a test. This takes a minute for a mutant at
+most, so it is no part of `.ci/run`; Ctrl-C ends it with what is known by then.
 
 No mutants are made of what cannot change a result: annotations and names of types, decorators (`slots=True`, the size
 of a cache), bases and keywords of a class, functions without a body (`@overload`, protocols), what only type checkers
@@ -188,7 +188,7 @@ def failures(tests: Sequence[str], copy: Path, seconds: float, *options: str) ->
     environment = {**os.environ, "PYTHONPATH": str(copy), "PYTHONDONTWRITEBYTECODE": "1"}
     try:  # a process that sleeps for ever uses no processor time
         done = subprocess.run(
-            command, cwd=copy, env=environment, timeout=10 * seconds, capture_output=True, check=False
+            command, cwd=copy, env=environment, timeout=30 * seconds, capture_output=True, check=False
         )
     except subprocess.TimeoutExpired:
         return None
@@ -215,18 +215,24 @@ def processor_time() -> float:
     return used.ru_utime + used.ru_stime
 
 
-def fate(mutant: Mutant, copy: Path, seconds: float) -> tuple[str, set[str]]:
-    """Return `killed`, `survived`, `time up` or `no tests` of a mutant in a copy, and the tests that fail."""
+def fate(mutant: Mutant, copy: Path, seconds: float, kills: Counter[str] | None = None) -> tuple[str, set[str]]:
+    """Return `killed`, `survived`, `time up` or `no tests` of a mutant in a copy, and the tests that fail.
+
+    Of tests that are equally near, the files with the most `kills` so far come first; those of this mutant are added.
+    """
+    kills = Counter() if kills is None else kills
     file, ends = copy / mutant.path, processor_time() + seconds
     tests = tests_of(mutant.path)
     source = file.read_text(encoding="utf-8")
     file.write_text(mutant.text(source), encoding="utf-8")
     try:
         for each in tests:  # the file by itself first: to collect a large folder takes long
-            failed = failures(each, copy, max(1.0, ends - processor_time()), "-x")
+            often = sorted(each, key=lambda tests: -kills[tests])
+            failed = failures(often, copy, max(1.0, ends - processor_time()), "-x")
             if failed is None:
                 return "time up", set()
             if failed:
+                kills.update(str(Path(test.partition("::")[0])) for test in failed)
                 return "killed", failed
     finally:
         file.write_text(source, encoding="utf-8")
@@ -247,6 +253,7 @@ def main(given: Sequence[str] | None = None) -> None:
     chosen = random.Random(asked.seed).sample(every, min(asked.n, len(every)))
     print(f"{len(chosen)} of {len(every):,} mutants of {under}, seed {asked.seed}", flush=True)
     ends: list[tuple[str, Mutant, set[str]]] = []
+    kills: Counter[str] = Counter()
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder, "copy")
         left_out = shutil.ignore_patterns(".git", ".venv", "__pycache__", ".*_cache")
@@ -254,7 +261,7 @@ def main(given: Sequence[str] | None = None) -> None:
         keep_bytecode(copy)
         try:
             for number, mutant in enumerate(chosen, 1):
-                end, failed = fate(mutant, copy, asked.seconds)
+                end, failed = fate(mutant, copy, asked.seconds, kills)
                 ends.append((end, mutant, failed))
                 if end != "killed":
                     print(f"{number}: {end}: {mutant}", flush=True)

@@ -136,3 +136,25 @@ def test_bytecode_is_kept_once_and_never_that_of_another_text(tmp_path):
     os.utime(tmp_path / "xlmc" / "few.py", ns=(times.st_atime_ns, times.st_mtime_ns))
     assert mutants.failures(["tests/test_few.py"], tmp_path, 60.0)
     assert kept == {each: each.read_bytes() for each in tmp_path.rglob("*.pyc")}
+
+
+def test_of_tests_that_are_equally_near_those_that_killed_most_come_first(tmp_path, monkeypatch):
+    monkeypatch.setattr(mutants, "ROOT", tmp_path)
+    given = []
+    ends = {"a": set(), "b": {"tests/excel/test_z.py::test_z[x]"}}
+    monkeypatch.setattr(mutants, "failures", lambda tests, copy, seconds, *_: given.append(tests) or ends[copy.name])
+    for name in ("tests/excel/test_few.py", "tests/excel/test_y.py", "tests/excel/test_z.py"):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    for copy in ("a", "b"):
+        (tmp_path / copy / "xlmc" / "excel").mkdir(parents=True)
+        (tmp_path / copy / "xlmc" / "excel" / "few.py").write_text("SEEN = 1\n", encoding="utf-8")
+    kills = mutants.Counter()
+    mutant = mutants.Mutant(Path("xlmc/excel/few.py"), 1, 7, "1", "2")
+    assert [mutants.fate(mutant, tmp_path / copy, 60.0, kills)[0] for copy in "ba"] == ["killed", "survived"]
+    assert kills == {str(Path("tests/excel/test_z.py")): 1}
+    assert [[Path(each).name for each in tests] for tests in given] == [
+        ["test_few.py"],
+        ["test_few.py"],
+        ["test_z.py", "test_y.py"],
+    ]

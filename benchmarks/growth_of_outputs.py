@@ -6,7 +6,8 @@ statistics, sensitivities, the result sheets, the page, the report and the saved
 counts is processor time, so that the measurement may share a machine, and the largest memory of each step. Other work
 still makes caches colder and figures larger.
 
-`--docs` puts the table into docs/speed.md.
+`--docs` puts the table into docs/speed.md. `--point assumptions=3000,forecasts=500,trials=1000000` measures one book,
+and prints what all default outputs cost as a multiple of the run.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ import machine
 from growth import slope
 from processes import answer_of
 
-__all__ = ["AXES", "MIDDLE", "STEPS", "main", "measure", "table", "write_book"]
+__all__ = ["AXES", "MIDDLE", "STEPS", "main", "measure", "measure_point", "point_of", "summary", "table", "write_book"]
 
 MIDDLE: Final = {"assumptions": 30, "forecasts": 10, "cells": 300, "trials": 10_000, "rejected": 1}
 """The point from which each axis starts; `rejected`: of so many trials one is accepted."""
@@ -50,6 +51,9 @@ STEPS: Final = (
     "open",
     "replay",
 )
+
+DEFAULT_OUTPUTS: Final = ("statistics", "sensitivity", "sheets", "page")
+"""What `xlmc simulate BOOK --html PAGE` makes beside the run."""
 
 ACCEPTED: Final = 1_000
 """Trials that runs with rejected ones go on for."""
@@ -113,14 +117,16 @@ def write_book(path: Path, assumptions: int, forecasts: int, cells: int, rejecte
             answers.write_formula(1, 5, "=Inputs!B2")
 
 
-def measure(axes: dict[str, Sequence[int]], folder: Path, limit: float, *, report: bool = True) -> dict[str, Any]:
+def measure(
+    axes: dict[str, Sequence[int]], folder: Path, limit: float, *, steps: Sequence[str] = STEPS
+) -> dict[str, Any]:
     """Axis -> points, one {"size", step -> seconds and megabytes, …} or {"size", "absent"} a size.
 
     Args:
         axes: sizes of each.
         folder: for the books.
         limit: seconds that one process may take.
-        report: write the report, too.
+        steps: that are wanted; books are loaded and run in any case.
     """
     found: dict[str, Any] = {}
     middle: dict[str, Any] | None = None
@@ -131,19 +137,57 @@ def measure(axes: dict[str, Sequence[int]], folder: Path, limit: float, *, repor
             if about == MIDDLE and middle is not None:
                 found[axis].append({**middle, "size": size})
                 continue
-            trials, book = about.pop("trials"), folder / f"{axis}-{size}.xlsx"
-            write_book(book, **about)
-            options = {"trials": trials} if about["rejected"] == 1 else {"until_accepted": ACCEPTED}
-            given = {"path": str(book), "folder": str(folder), "options": options, "report": report}
-            answer = answer_of(Path(sys.executable), "one_growth_of_outputs.py", given, limit)
-            point = {"absent": answer} if isinstance(answer, str) else answer
+            point = measure_point(about, folder, limit, steps)
             found[axis].append({"size": size, **point})
             if size == MIDDLE[axis]:
                 middle = found[axis][-1]
             print(f"{axis} {size:,}: {_line(point)}", flush=True)
-            for each in folder.glob("*"):
-                each.unlink()
     return found
+
+
+def measure_point(about: dict[str, int], folder: Path, limit: float, steps: Sequence[str]) -> dict[str, Any]:
+    """Return step -> seconds and megabytes of one book, or {"absent": why}; the folder is empty afterwards."""
+    trials, book = about["trials"], folder / "book.xlsx"
+    write_book(book, **{name: number for name, number in about.items() if name != "trials"})
+    options = {"trials": trials} if about["rejected"] == 1 else {"until_accepted": ACCEPTED}
+    given = {"path": str(book), "folder": str(folder), "options": options, "steps": steps}
+    answer = answer_of(Path(sys.executable), "one_growth_of_outputs.py", given, limit)
+    for each in folder.glob("*"):
+        each.unlink()
+    return {"absent": answer} if isinstance(answer, str) else answer
+
+
+def point_of(text: str) -> dict[str, int]:
+    """Read a point: `assumptions=3000,forecasts=500`; what is not named is as in the middle point, or as many cells as
+    are needed.
+
+    Raises:
+        ArgumentTypeError: a part is no axis with a whole number from 1.
+    """
+    given: dict[str, int] = {}
+    for part in text.split(","):
+        name, _, number = part.partition("=")
+        if name not in AXES or not number.isdecimal() or not int(number):
+            raise argparse.ArgumentTypeError(f"{part}: write one of {', '.join(AXES)}, =, and a whole number from 1")
+        given[name] = int(number)
+    about = {**MIDDLE, **given}
+    needed = about["assumptions"] + about["forecasts"] + 1
+    return {**about, "cells": max(about["cells"], needed)}
+
+
+def summary(point: dict[str, Any]) -> str:
+    """Return a line a step, and what the default outputs cost together as a multiple of the run."""
+    if "absent" in point:
+        return str(point["absent"])
+    lines = [
+        f"{step:12} {point[step]['seconds']:8.2f} s {point[step]['megabytes'] or 0.0:8,.0f} MB"
+        for step in STEPS
+        if step in point
+    ]
+    asked = [step for step in DEFAULT_OUTPUTS if step in point]
+    together = sum(point[step]["seconds"] for step in asked)
+    lines.append(f"{', '.join(asked)}: {together:.1f} s, {together / point['run']['seconds']:.2f} times the run")
+    return "\n".join(lines)
 
 
 def _line(point: dict[str, Any]) -> str:
@@ -203,12 +247,24 @@ def draw(found: dict[str, Any], target: Path) -> None:
 def main(arguments: Sequence[str] | None = None) -> None:
     """Measure, and write JSON, picture and table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--output", type=Path, required=True, help="folder for the results")
+    target = parser.add_mutually_exclusive_group(required=True)
+    target.add_argument("--output", type=Path, help="folder for the results")
+    target.add_argument(
+        "--point",
+        type=point_of,
+        metavar="AXIS=NUMBER,...",
+        help="measure one book only, and print what each step costs: assumptions=3000,forecasts=500,trials=1000000",
+    )
+    parser.add_argument("--steps", nargs="+", choices=STEPS, default=STEPS, help="ask for these only")
     parser.add_argument("--axes", nargs="+", choices=AXES, default=list(AXES))
     parser.add_argument("--most", type=int, metavar="N", help="leave out larger sizes")
     parser.add_argument("--limit", type=float, default=300.0, help="seconds that one process may take")
     parser.add_argument("--docs", action="store_true", help="put the table into docs/speed.md")
     chosen = parser.parse_args(arguments)
+    if chosen.point:
+        with tempfile.TemporaryDirectory(prefix="growth-") as name:
+            print(summary(measure_point(chosen.point, Path(name), chosen.limit, chosen.steps)))
+        return
     axes = {axis: [size for size in AXES[axis] if not chosen.most or size <= chosen.most] for axis in chosen.axes}
     chosen.output.mkdir(parents=True, exist_ok=True)
     results = chosen.output / "growth-of-outputs.json"
@@ -216,7 +272,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     about = machine.describe()
     folder = Path(tempfile.mkdtemp(prefix="growth-"))
     try:
-        found = {**known, **measure(axes, folder, chosen.limit)}
+        found = {**known, **measure(axes, folder, chosen.limit, steps=chosen.steps)}
     finally:
         shutil.rmtree(folder)
     found = {axis: found[axis] for axis in AXES if axis in found}

@@ -1,5 +1,7 @@
 """All that is asked of one book, in this process: the task as JSON on stdin, the cost of each step as JSON on stdout.
 
+The task names the steps that are wanted; the book is loaded and run whatever they are.
+
 A step's cost is the processor time of this process and of its threads, and the largest memory while it ran, with all
 that earlier steps left: the kernel's mark is set back before each.
 """
@@ -24,13 +26,17 @@ def main() -> None:
     given = json.loads(sys.stdin.readline())
     book, folder = Path(given["path"]), Path(given["folder"])
     found: dict[str, Any] = {"version": xlmc.__version__}
+    wanted = {"load", "run", *given["steps"]}
 
     def step(name: str, ask: Callable[[], Any]) -> Any:
+        if name not in wanted:
+            return None
         if _CLEAR.exists():
             _CLEAR.write_text("5", encoding="utf-8")
         start = process_time()
         answer = ask()
         found[name] = {"seconds": process_time() - start, "megabytes": _peak()}
+        print(f"{name} {found[name]['seconds']:.2f} s", file=sys.stderr, flush=True)
         return answer
 
     model = step("load", lambda: xlmc.load(book))
@@ -41,8 +47,7 @@ def main() -> None:
     step("sensitivity", lambda: xlmc.sensitivities(run))
     step("sheets", lambda: run.save(folder / "out.xlsx", overwrite=True))
     step("page", lambda: run.save_page(folder / "out.html", overwrite=True))
-    if given["report"]:
-        step("report", lambda: run.save_report(folder / "out.docx", overwrite=True))
+    step("report", lambda: run.save_report(folder / "out.docx", overwrite=True))
     step("save", lambda: keep(run._run, folder / "out.xlmcrun", overwrite=True))
     step("open", lambda: open_run(folder / "out.xlmcrun"))
     step("replay", lambda: xlmc.replay(folder / "out.xlmcrun"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import signal
 
@@ -28,9 +29,10 @@ def test_the_book_has_what_was_asked_for(tmp_path, rejected):
 
 def test_a_point_has_every_step(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(growth, "MIDDLE", {"assumptions": 3, "forecasts": 1, "cells": 10, "trials": 200, "rejected": 1})
-    found = growth.measure({"trials": [200], "cells": [10]}, tmp_path, 300.0, report=False)
-    [point] = found["trials"]
     steps = [step for step in growth.STEPS if step != "report"]
+    found = growth.measure({"trials": [200], "cells": [10]}, tmp_path, 300.0, steps=steps)
+    [point] = found["trials"]
+    assert "report" not in point
     assert all(point[step]["seconds"] >= 0.0 for step in steps)
     assert point["accepted"] == point["trials"] == 200
     assert {**found["cells"][0], "size": 200} == point  # the middle point is measured once
@@ -44,6 +46,24 @@ def test_the_slope_is_of_the_last_decade():
     points = [{"size": size, "run": {"seconds": size**2 / 1e4, "megabytes": 1.0}} for size in (10, 100, 1_000)]
     assert "| 2.00 |" in growth.table({"cells": points}).splitlines()[-1]
     assert "no answer" in growth.table({"cells": [{"size": 3, "absent": "no answer within 1 s"}]})
+
+
+def test_a_point_is_one_book_and_its_default_outputs_are_a_multiple_of_the_run(tmp_path, capsys):
+    about = growth.point_of("assumptions=4,forecasts=2,trials=200,cells=1")
+    assert about == {"assumptions": 4, "forecasts": 2, "cells": 7, "trials": 200, "rejected": 1}
+    growth.main(["--point", "assumptions=4,forecasts=2,trials=200", "--steps", "statistics", "sheets"])
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.split()[0] for line in lines[:4]] == ["load", "run", "statistics", "sheets"]
+    assert lines[4].startswith("statistics, sheets: ")
+    assert lines[4].endswith(" times the run")
+    point = {step: {"seconds": seconds, "megabytes": 1.0} for step, seconds in (("run", 2.0), ("sheets", 3.0))}
+    assert growth.summary(point).endswith("1.50 times the run")
+
+
+@pytest.mark.parametrize("text", ["cells", "rows=3", "trials=0", "trials=1e6", "assumptions=3,"])
+def test_a_point_of_other_words_is_refused(text):
+    with pytest.raises(argparse.ArgumentTypeError, match="write one of assumptions, forecasts"):
+        growth.point_of(text)
 
 
 @pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::DeprecationWarning")

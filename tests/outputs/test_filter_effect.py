@@ -6,8 +6,18 @@ import weakref
 import numpy as np
 import pytest
 
+from xlmc.montecarlo.columns import Folder
 from xlmc.outputs import filter_effect as module
-from xlmc.outputs.filter_effect import DRAWN, filter_effect, filter_effect_of, marginal, shapes, shapes_of
+from xlmc.outputs.document.content.assumptions import assumption_remarks
+from xlmc.outputs.filter_effect import (
+    DRAWN,
+    filter_effect,
+    filter_effect_of,
+    marginal,
+    shapes,
+    shapes_of,
+    told_of_prior,
+)
 
 RANDOM = np.random.default_rng(11)
 
@@ -61,6 +71,28 @@ def test_without_filters_each_assumption_is_sorted_once(make, monkeypatch, packa
     assert len(sorted_columns) == 2
     assert filter_effect_of(run, "a").accepted.mean == filter_effect_of(run, "a").prior.mean
     assert len(sorted_columns) == 3
+
+
+@pytest.mark.parametrize(("count", "told"), [(DRAWN, 20_000), (DRAWN + 1, 10_000), (DRAWN + 20, 9_000)])
+def test_of_many_assumptions_fewer_draws_before_filtering_are_summarised(make, monkeypatch, count, told):
+    monkeypatch.setattr(module, "_TOLD", 10_000 * (DRAWN + 1) + 5)
+    monkeypatch.setattr(module, "_LEAST_TOLD", 9_000)
+    cells = {f"A{k}": 0.5 for k in range(1, count + 1)} | {"B1": f"=SUM(A1:A{count})"}
+    assumptions = [make.uniform(f"a{k}", f"A{k}", 0.0, 1.0) for k in range(1, count + 1)]
+    run = make.simulate(cells, assumptions, [make.forecast("sum", "B1")], trials=20_000)
+    found = filter_effect_of(run, "a1")
+    assert found.prior == marginal(run.prior["a1"][:told])
+    assert found.prior.trials == told_of_prior(run) == told
+    assert found.accepted.trials == 20_000
+    assert any(f"he first {told:,} trials" in each for each in assumption_remarks(run))
+
+
+@pytest.mark.parametrize("missing", [False, True])
+def test_draws_on_disk_have_the_same_marginal_as_in_memory(missing):
+    values = np.where(np.arange(5_000) % 7 == 3, np.nan, RANDOM.random(5_000)) if missing else RANDOM.random(5_000)
+    folder = Folder()
+    folder.append("draws", [values])
+    assert marginal(folder.array("draws", values.dtype)) == marginal(values)
 
 
 def test_what_is_known_of_an_assumption_does_not_hold_the_run(make):

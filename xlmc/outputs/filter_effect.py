@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from xlmc.montecarlo import statistics
-from xlmc.montecarlo.columns import ascending, numbers
+from xlmc.montecarlo.columns import RUN, ascending, numbers, on_disk
 from xlmc.montecarlo.statistics import Estimate
 
 if TYPE_CHECKING:
@@ -35,12 +35,17 @@ __all__ = [
     "marginal",
     "shapes",
     "shapes_of",
+    "told_of_prior",
 ]
 
 PERCENTS = (5.0, 50.0, 95.0)
 
 DRAWN: Final = 100
 """The most assumptions whose shapes are drawn: more would make files slow to write and to open."""
+
+_TOLD: Final = 65_536 * DRAWN
+_LEAST_TOLD: Final = 8_192
+"""Draws before filtering that are summarised: of all assumptions together, and of each at least."""
 
 _BINS = 24
 _LONG = 1.3
@@ -152,6 +157,8 @@ def marginal(
     ids = None if replicate is None else replicate[~np.isnan(draws)]
     w = None if weights is None else weights[~np.isnan(draws)]
     values = numbers(draws)
+    if on_disk(values) and values.size <= RUN:  # a short one is sorted in memory: files would take longer
+        values = values.copy()
     sample = statistics.Sample.of(values, w, ids)
     return Marginal(
         trials=int(values.size),
@@ -159,6 +166,15 @@ def marginal(
         standard_deviation=statistics.standard_deviation(sample),
         percentiles=statistics.percentiles(sample, PERCENTS),
     )
+
+
+def told_of_prior(simulation: RunResult) -> int:
+    """Return how many draws of each assumption before filtering are summarised: all that were kept; of more than
+    `DRAWN` assumptions fewer, so that the work does not grow with them.
+    """
+    kept = next((values.size for values in simulation.prior.values()), 0)
+    count = len(simulation.prior)
+    return kept if count <= DRAWN else min(kept, max(_TOLD // count, _LEAST_TOLD))
 
 
 def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | None:
@@ -170,8 +186,8 @@ def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | N
         weights = None if simulation.weighting is None else simulation.weighting.weights
         replicate = partial(simulation.plan.replicate_of, simulation.trial_index)
         found[assumption] = FilterEffect(
-            partial(_marginal_of, simulation.prior, assumption, lambda: None, None),
-            partial(_marginal_of, simulation.inputs, assumption, replicate, weights),
+            partial(_marginal_of, simulation.prior, assumption, lambda: None, None, told_of_prior(simulation)),
+            partial(_marginal_of, simulation.inputs, assumption, replicate, weights, None),
         )
     return found[assumption]
 
@@ -181,9 +197,10 @@ def _marginal_of(
     assumption: str,
     replicate: Callable[[], NDArray[np.int64] | None],
     weights: NDArray[np.float64] | None,
+    first: int | None,
 ) -> Marginal:
-    """Return the marginal of an assumption's column, with the replicates of the trials."""
-    draws, ids = columns[assumption], replicate()
+    """Return the marginal of an assumption's column, or of its first draws, with the replicates of the trials."""
+    draws, ids = columns[assumption][:first], replicate()
     return marginal(draws, None if ids is None else ids[: draws.size], weights)
 
 

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import stats
 
-from xlmc.montecarlo.statistics import mode
+from xlmc.montecarlo.statistics import Sample, mode
+from xlmc.montecarlo.statistics.mode import half_sample_mode, half_sample_modes
 
 EXAMPLES = settings(max_examples=50, deadline=None)
 
@@ -118,3 +119,22 @@ def test_too_few_trials_or_replicates_have_no_error():
 def test_no_trials_give_nan():
     assert math.isnan(mode([]).value)
     assert (mode([]).error, mode([]).interval, mode([]).n) == (None, None, 0)
+
+
+@pytest.mark.parametrize("size", [2, 3, 4, 31, 500])
+@pytest.mark.parametrize(
+    "draw",
+    [
+        lambda random, shape: random.lognormal(size=shape),
+        lambda random, shape: random.integers(0, 9, shape) * 1.0,
+        lambda random, shape: random.integers(0, 3 * shape[1], shape) / 10,
+        lambda random, shape: np.where(random.random(shape) < 0.45, 1.0, random.random(shape)),
+        lambda random, shape: random.choice([-1, 1], shape) * 1.7e308 * random.random(shape),
+    ],
+    ids=["continuous", "counts", "rounded", "partly equal", "as large as doubles"],
+)
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")
+def test_the_modes_of_groups_are_those_of_each_alone(draw, size):
+    rows = np.sort(draw(np.random.default_rng(5), (32, size)), axis=1)
+    alone = [half_sample_mode(Sample.of(row)) for row in rows]
+    np.testing.assert_array_equal(half_sample_modes(rows), alone)

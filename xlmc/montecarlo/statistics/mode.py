@@ -22,7 +22,7 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from xlmc.montecarlo.columns import PART, passed, release
+from xlmc.montecarlo.columns import PART, passed, picked, release
 from xlmc.montecarlo.statistics.estimate import Estimate, with_error
 from xlmc.montecarlo.statistics.sample import Sample, Values
 
@@ -51,11 +51,10 @@ def mode(
     if sample.n == 0:
         return Estimate(np.nan)
     value = half_sample_mode(sample)
-    sizes_and_modes = [(group.n, half_sample_mode(group)) for group in _deal(sample)]
+    sizes, modes = _modes_of_groups(sample)
     release(sample.x)
-    if len(sizes_and_modes) < 2:
+    if modes.size < 2:
         return Estimate(value, n=sample.n)
-    sizes, modes = np.array(sizes_and_modes).T
     largest = float(np.abs(modes).max())
     unit = largest if largest > _SQUARABLE else 1.0
     error = float(unit * np.std(modes / unit, ddof=1) * (np.mean(sizes) / sample.n) ** CONVERGENCE)
@@ -172,15 +171,53 @@ def _mode_of_three(x: Floats, w: Floats) -> float:
     return float(x[0] + np.sum(w * (x - x[0])) / np.sum(w))
 
 
-def _deal(sample: Sample) -> Iterator[Sample]:
-    """Yield independent parts: the replicates, or groups dealt by rank, which do not depend on the order of trials."""
+def _modes_of_groups(sample: Sample) -> tuple[Floats, Floats]:
+    """Return the sizes and the modes, `(groups,)`, of independent parts: the replicates, or groups dealt by rank, which
+    do not depend on the order of trials.
+    """
     if sample.group is not None:
-        yield from (sample.replicate(each) for each in range(sample.groups))
-        return
+        parts = [sample.replicate(each) for each in range(sample.groups)]
+        return np.array([part.n for part in parts], float), np.array([half_sample_mode(part) for part in parts])
     groups = min(GROUPS, sample.n // LEAST_IN_A_GROUP)
     if groups < 2:
-        return
-    yield from (sample.part(ranks) for ranks in _dealt(sample.n, groups))
+        return np.empty(0), np.empty(0)
+    dealt = _dealt(sample.n, groups)
+    if sample.w is None:
+        modes = half_sample_modes(picked(sample.x, dealt.ravel()).reshape(dealt.shape))
+    else:
+        modes = np.array([half_sample_mode(sample.part(ranks)) for ranks in dealt])
+    return np.full(groups, float(dealt.shape[1])), modes
+
+
+def half_sample_modes(rows: Floats) -> Floats:
+    """Return the modes, `(g,)`, of `(g, n)` values, ascending in each row: what `half_sample_mode` gives for each."""
+    found, waiting = np.empty(len(rows)), np.arange(len(rows))
+    different = 1 + np.count_nonzero(rows[:, 1:] != rows[:, :-1], axis=1)
+
+    def finish(done: NDArray[np.bool_], mode_of: Callable[[Floats], float]) -> None:
+        nonlocal rows, waiting
+        if done.any():
+            found[waiting[done]] = [mode_of(row) for row in rows[done]]
+            rows, waiting = rows[~done], waiting[~done]
+
+    finish(2 * different <= rows.shape[1], lambda row: _most_frequent(row, None))
+    with np.errstate(over="ignore"):  # a half that is wider than all doubles is not the densest
+        while waiting.size and rows.shape[1] > 3:
+            size = (rows.shape[1] + 1) // 2
+            starts = _find_smallest_of_rows(rows[:, size - 1 :] - rows[:, : rows.shape[1] - size + 1])
+            rows = np.array([row[start : start + size] for row, start in zip(rows, starts, strict=True)])
+            finish(rows[:, 0] == rows[:, -1], lambda row: float(row[0]))
+    finish(np.ones(waiting.size, bool), lambda row: _mode_of_three(row, np.ones(row.size)))
+    return found
+
+
+def _find_smallest_of_rows(widths: Floats) -> NDArray[np.intp]:
+    """Return `_find_smallest` of each row."""
+    smallest = widths <= widths.min(axis=1, keepdims=True) * (1.0 + ROUNDING)
+    found: NDArray[np.intp] = smallest.argmax(axis=1)
+    for row in np.flatnonzero(np.count_nonzero(smallest, axis=1) > 2):
+        found[row] = _find_smallest(widths[row])
+    return found
 
 
 @lru_cache(maxsize=2)

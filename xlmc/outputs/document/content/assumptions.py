@@ -15,7 +15,7 @@ from xlmc.outputs.document.cells import NONE, Shown
 from xlmc.outputs.document.charts import shape_chart
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Block, Content, Paragraph, Table, cell_text
-from xlmc.outputs.filter_effect import filter_effect_of
+from xlmc.outputs.filter_effect import filter_effect_of, told_of_prior
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Assumption
@@ -62,7 +62,7 @@ def meaning_of_marks() -> str:
 
 def assumption_remarks(simulation: RunResult) -> Iterator[str]:
     """Yield the sentences that say which trials the numbers are from."""
-    early = max((values.size for values in simulation.prior.values()), default=0)
+    early = told_of_prior(simulation)
     which = "Before filtering: t" if simulation.filters_act else "T"
     yield f"{which}he first {count_text(early)} trials. ± is the standard error."
     if simulation.plan.size:

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from simulated import simulated
 
+from xlmc.analysis.studies.sensitivity import pick_and_freeze as module
 from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.analysis.studies.sensitivity.pick_and_freeze import pick_and_freeze, sobol_indices
 
@@ -50,6 +51,17 @@ def test_linear(book, normal):
         assert abs(total.value - truth) < 4.0 * total.error
     assert run.indices["c"][0][1].value == 0.0  # it does not enter y: to the last bit
     assert run.indices["c"][1][1].value == pytest.approx(1.0, abs=4.0 * run.indices["c"][1][1].error)
+
+
+@pytest.mark.parametrize("most", [1, 1_000, 5_000, 1 << 23])
+def test_assumptions_that_are_evaluated_together_have_the_same_indices(ishigami, monkeypatch, most):
+    asked = {name: [0] for name in ishigami.draws}
+    expected = pick_and_freeze(ishigami, asked, 10, 1)
+    monkeypatch.setattr(module, "_MOST_NUMBERS", most)
+    told = []
+    assert pick_and_freeze(ishigami, asked, 10, 1, told.append) == expected
+    assert told[-1] == 1.0
+    assert pick_and_freeze(ishigami, {}, 10, 1).indices == {}
 
 
 def test_errors_are_the_spread_between_runs(ishigami):

@@ -33,6 +33,8 @@ __all__ = ["SobolRun", "pick_and_freeze", "sobol_indices", "why_not"]
 
 _MOST_PAIRS: Final = 1 << 13
 _LEAST_PAIRS: Final = 1 << 8
+_MOST_NUMBERS: Final = 1 << 23
+"""Draws of the trials that are evaluated together: of few pairs, those of several assumptions are."""
 _LEAST_EVALUATED, _MOST_EVALUATED = 1 << 15, 1 << 17
 _INSTEAD: Final = "What each assumption explains is given instead"
 Floats = NDArray[np.float64]
@@ -93,15 +95,24 @@ def pick_and_freeze(
     chosen = list(assumptions)[: max(evaluations // _LEAST_PAIRS - 2, 1)]
     pairs = min(_MOST_PAIRS, evaluations // (len(chosen) + 2))
     program = model.program("numpy")
-    block = min(pairs, program.largest_block)
-    first, second = _draws(model, seed, 0, pairs, block), _draws(model, seed, pairs, pairs, block)
+    fitting = min(program.largest_block, _MOST_NUMBERS // max(len(model.draws), 1))
+    together = max(min(fitting // pairs, len(chosen)), 1)
+    block = min(together * pairs, program.largest_block)
+    first, second = (_draws(model, seed, start, pairs, min(pairs, block)) for start in (0, pairs))
     evaluator = program.evaluator(block)
-    a, b = (_answers(evaluator, draws, pairs, block) for draws in (first, second))
+    numbers = sorted({number for name in chosen for number in assumptions[name]})
+    a, b = (_answers(evaluator, draws, numbers, pairs, block) for draws in (first, second))
+    mixed = {name: np.tile(values, together) for name, values in first.items()}
     found: dict[str, dict[int, tuple[Estimate, Estimate]]] = {}
-    for name in chosen:
-        c = _answers(evaluator, {**first, name: second[name]}, pairs, block)
+    for start in range(0, len(chosen), together):
+        rows = {name: slice(k * pairs, (k + 1) * pairs) for k, name in enumerate(chosen[start : start + together])}
+        for name, here in rows.items():
+            mixed[name][here] = second[name]
+        c = _answers(evaluator, mixed, numbers, len(rows) * pairs, block)
+        for name, here in rows.items():
+            mixed[name][here] = first[name]
+            found[name] = {number: sobol_indices(a[number], b[number], c[number][here]) for number in assumptions[name]}
         progress(len(found) / len(chosen))
-        found[name] = {number: sobol_indices(a[number], b[number], c[number]) for number in assumptions[name]}
     return SobolRun(pairs, found)
 
 
@@ -116,14 +127,18 @@ def _draws(model: CompiledModel, seed: int, start: int, count: int, block: int) 
     return drawn
 
 
-def _answers(evaluator: Evaluator, draws: Mapping[str, Floats], count: int, block: int) -> list[Floats]:
-    """`(count,)` a forecast, NaN where it is no number."""
-    found: list[list[Floats]] = []
+def _answers(
+    evaluator: Evaluator, draws: Mapping[str, Floats], numbers: Sequence[int], count: int, block: int
+) -> dict[int, Floats]:
+    """Return number of a forecast -> its `(count,)` answers, NaN where it is no number."""
+    found: dict[int, list[Floats]] = {number: [] for number in numbers}
     for trials, part in portions(draws, count, block):
         n = trials.stop - trials.start
         evaluator.filters(part, n)
-        found.append([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
-    return [np.concatenate(columns) for columns in zip(*found, strict=True)]
+        columns = evaluator.forecasts(np.arange(n))
+        for number, values in found.items():
+            values.append(columns[number].as_floats())
+    return {number: np.concatenate(values) for number, values in found.items()}
 
 
 def sobol_indices(a: Floats, b: Floats, c: Floats) -> tuple[Estimate, Estimate]:

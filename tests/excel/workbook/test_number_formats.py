@@ -40,5 +40,21 @@ def test_other_formats_are_general(number):
     assert _read(BUILTIN_FORMATS[number]) == "General"
 
 
+def test_cells_are_found_in_any_order():
+    book = openpyxl.Workbook()
+    places = [f"{column}{row}" for row in (1, 2, 11, 21) for column in ("A", "B", "AB")]
+    for index, place in enumerate(places):
+        book.active[place] = index
+        book.active[place].number_format = f'0" no. {index}"'
+    file = io.BytesIO()
+    book.save(file)
+    with ZipFile(file) as package:
+        parts = {name: package.read(name) for name in package.namelist()}
+    sheet = "xl/worksheets/sheet1.xml"
+    expected = {(sheet, place): f'0" no. {index}"' for index, place in enumerate(places)} | {(sheet, "C3"): "General"}
+    for asked in ([*places, "C3"], [*reversed(places), "C3"], ["C3", *places[5:], *places[:6]]):
+        assert cell_formats(parts, "xl/workbook.xml", [(sheet, place) for place in asked]) == expected
+
+
 def test_a_format_of_the_file_comes_before_its_number():
     assert _read('0.0" mph"') == '0.0" mph"'

@@ -112,9 +112,14 @@ def cell_formats(
         WorkbookError: the styles are damaged.
     """
     known, found = _formats(parts, workbook), {}
+    passed: dict[str, int] = {}
     for sheet, place in places:
-        xml = parts.get(sheet, b"")
-        at = xml.find(f' r="{place}"'.encode())
+        xml, reference = parts.get(sheet, b""), f' r="{place}"'.encode()
+        start = passed.get(sheet, 0)  # cells are often asked for in the order in which they stand
+        at = xml.find(reference, start)
+        if at < 0:
+            at = xml.find(reference, 0, start + len(reference))
+        passed[sheet] = max(at, 0)
         tag = xml[xml.rfind(b"<", 0, at) : xml.find(b">", at)] if at > 0 else b""
         style = _STYLE.search(tag)
         number, code = known[int(style[1])] if style and int(style[1]) < len(known) else ("0", "")

@@ -240,6 +240,9 @@ class Columns(Mapping[str, Array]):
             return np.empty(0, place.dtype)
         return self._folder.array(place.file, place.dtype, place.begin, place.rows)
 
+    def __contains__(self, name: object) -> bool:
+        return name in self._places  # a mapping would map the column to find that out
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._places)
 

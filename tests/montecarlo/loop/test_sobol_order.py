@@ -7,7 +7,8 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from xlmc.montecarlo.loop.sobol_order import _score, plan_sampling
+from xlmc.montecarlo.loop.sobol_order import _COMPARED, _largest_correlations, _score, plan_sampling
+from xlmc.montecarlo.statistics import rank_correlation
 
 GIVEN = {
     name: {"cell": cell, "low": 0, "high": 1} for name, cell in {"a": "A1", "b": "A2", "c": "A3", "d": "A4"}.items()
@@ -61,4 +62,21 @@ X = np.array([-3.0, -1.0, 1.0, 3.0])
     ],
 )
 def test_scores(prior, accepted, forecasts, expected):
-    assert _score(prior, accepted, forecasts) == pytest.approx(expected, rel=1e-12)
+    assert _score(prior, accepted, _largest_correlations({"a": accepted}, forecasts)["a"]) == pytest.approx(
+        expected, rel=1e-12
+    )
+
+
+def test_correlations_with_all_forecasts_are_those_with_each_alone():
+    random = np.random.default_rng(2)
+    accepted = {"a": random.random(5_000), "b": random.integers(0, 5, 5_000) * 1.0, "c": np.ones(5_000)}
+    holes = np.where(random.random(5_000) < 0.3, np.nan, accepted["a"] ** 2)
+    noise = random.normal(size=5_000)
+    forecasts = [accepted["a"] + noise, accepted["b"] - accepted["a"], holes, np.ones(5_000), np.full(5_000, np.nan)]
+    for name, draws in accepted.items():
+        alone = []
+        for forecast in forecasts:
+            numbers = np.flatnonzero(~np.isnan(forecast))[:_COMPARED]
+            alone.append(abs(rank_correlation(draws[numbers], forecast[numbers]).value))
+        expected = np.nanmax([*alone, 0.0])
+        assert _largest_correlations(accepted, forecasts)[name] == expected

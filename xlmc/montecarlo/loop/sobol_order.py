@@ -19,7 +19,7 @@ from xlmc.montecarlo.loop.blocks import Block, Task
 from xlmc.montecarlo.loop.scheduling.run_spec import model_runner
 from xlmc.montecarlo.sampling.sampling_methods import METHODS
 from xlmc.montecarlo.sampling.sampling_plan import SamplingPlan
-from xlmc.montecarlo.statistics import rank_correlation
+from xlmc.montecarlo.statistics.association import centred_ranks
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
@@ -53,26 +53,43 @@ def _order_by_importance(model: CompiledModel, seed: int) -> tuple[str, ...]:
     starts = range(0, PILOT_TRIALS, block)
     blocks = [runner.run(Task(start, min(block, PILOT_TRIALS - start), prior=True)) for start in starts]
     accepted, forecasts = _joined([each.draws for each in blocks]), _columns(blocks)
+    largest = _largest_correlations(accepted, forecasts)
     scores = {
-        name: round(_score(draws, accepted[name], forecasts), _DECIMALS)
+        name: round(_score(draws, accepted[name], largest[name]), _DECIMALS)
         for name, draws in _joined([each.prior or {} for each in blocks]).items()
     }
     return tuple(sorted(model.draws, key=lambda name: (name in chances, -scores[name])))
 
 
-def _score(prior: Floats, accepted: Floats, forecasts: Sequence[Floats]) -> float:
+def _score(prior: Floats, accepted: Floats, correlation: float) -> float:
     """How much the filters move or narrow it, or else its largest rank correlation with a forecast."""
     known, left = prior[~np.isnan(prior)], accepted
     if left.size < 2 or not (spread := float(np.std(known))):
         return 0.0
     moved, narrowed = abs(float(np.mean(left) - np.mean(known))) / spread, 1.0 - float(np.std(left)) / spread
-    return max(moved, narrowed, *(_together(left, forecast) for forecast in forecasts))
+    return max(moved, narrowed, correlation)
 
 
-def _together(draws: Floats, forecast: Floats) -> float:
-    numbers = np.flatnonzero(~np.isnan(forecast))[:_COMPARED]
-    found = abs(rank_correlation(draws[numbers], forecast[numbers]).value)
-    return 0.0 if np.isnan(found) else found
+def _largest_correlations(accepted: Mapping[str, Floats], forecasts: Sequence[Floats]) -> dict[str, float]:
+    """Return each assumption's largest rank correlation with a forecast, without its sign.
+
+    An assumption is ranked once for all forecasts that are numbers in the same trials. Ranks are multiples of a half,
+    and so their products and sums are exact: matrix products of them have the same bits whatever adds them up.
+    """
+    alike: dict[bytes, tuple[NDArray[np.intp], list[Floats]]] = {}
+    for forecast in forecasts:
+        numbers = np.flatnonzero(~np.isnan(forecast))[:_COMPARED]
+        alike.setdefault(numbers.tobytes(), (numbers, []))[1].append(centred_ranks(forecast[numbers]))
+    found = dict.fromkeys(accepted, 0.0)
+    for numbers, ranks in alike.values():
+        of_forecasts = np.array(ranks)
+        squares = np.sum(of_forecasts**2, axis=1)
+        for name, draws in accepted.items():
+            own = centred_ranks(draws[numbers])
+            size = np.sqrt(squares * np.sum(own**2))
+            each = np.divide(np.abs(of_forecasts @ own), size, out=np.zeros_like(size), where=size > 0.0)
+            found[name] = max(found[name], min(float(each.max()), 1.0))
+    return found
 
 
 def _joined(parts: Sequence[Mapping[str, Floats]]) -> dict[str, Floats]:

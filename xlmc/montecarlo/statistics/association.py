@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from xlmc.montecarlo.statistics.estimate import Estimate, with_error
 
-__all__ = ["rank_correlation"]
+__all__ = ["centred_ranks", "rank_correlation"]
 
 Floats = NDArray[np.float64]
 
@@ -58,13 +58,13 @@ def _estimate_from_trials(value: float, n: int, confidence: float) -> Estimate:
 def _spearman(x: Floats, y: Floats) -> float:
     if x.size == 0:
         return math.nan
-    first, second = _centred_ranks(x), _centred_ranks(y)
+    first, second = centred_ranks(x), centred_ranks(y)
     scale = math.sqrt(float(np.sum(first**2)) * float(np.sum(second**2)))
     return min(1.0, max(-1.0, float(np.sum(first * second)) / scale)) if scale else math.nan
 
 
-def _centred_ranks(x: Floats) -> Floats:
-    """Return the (n,) ranks minus their mean."""
+def centred_ranks(x: Floats) -> Floats:
+    """Return the (n,) ranks minus their mean: multiples of a half; equal values share their mean rank."""
     order = np.argsort(x)
     ascending = x[order]
     starts = np.flatnonzero(np.concatenate([[True], ascending[1:] != ascending[:-1]]))

@@ -63,7 +63,8 @@ def test_steps_tell_which_of_how_many_and_how_long():
 
 
 def test_ctrl_c_ends_the_steps_once_there_is_something_to_tell():
-    with Steps() as steps:
+    told = []
+    with Steps(told.append) as steps:
         steps.begin("first")
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
@@ -76,6 +77,8 @@ def test_ctrl_c_ends_the_steps_once_there_is_something_to_tell():
                 signal.raise_signal(signal.SIGINT)
         assert done == [0, 1, 2]
         assert steps.why_ended == "it was interrupted after 1 of about 9 steps"
+        steps.begin("what is needed all the same")
+        assert told[-1] == "what is needed all the same (interrupted: it ends with what is known as soon as it can)"
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
 

@@ -70,6 +70,8 @@ class Steps:
             self._tell(what + self._standing())
 
     def _standing(self) -> str:
+        if self.ended:
+            return " (interrupted: it ends with what is known as soon as it can)"
         if self._expected < self._begun:
             return ""
         left = (self._expected - self._begun + 1) * (median(self._last) if self._last else 0.0)

@@ -89,7 +89,7 @@ def test_columns_in_one_piece_of_memory_are_what_was_added(monkeypatch, in_memor
     """Some as long as expected, one longer, one that has another length, one of which nothing was said."""
     monkeypatch.setattr(column_store, "IN_MEMORY", in_memory)
     types = {"a": np.dtype(np.float64), "b": np.dtype(np.int64), "c": np.dtype(np.float64), "d": np.dtype(np.int8)}
-    keeper = ColumnStore({**types, "e": types["a"]}, {"a": 20, "b": 20, "c": 20, "d": 9}, filled=True)
+    keeper = ColumnStore({**types, "e": types["a"]}, {"a": 20, "b": 20, "c": 20, "d": 9})
     expected = {key: [] for key in "abcde"}
     for number in range(5):
         for key, numbers in expected.items():

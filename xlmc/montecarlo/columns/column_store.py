@@ -264,7 +264,6 @@ class ColumnStore:
     Args:
         types: column -> the type of its numbers.
         expected: column -> about how many numbers it will have; more is allowed.
-        filled: whether all will have so many: then memory is taken for many columns at once.
         in_memory: bytes of all columns together that stay in memory; None for `IN_MEMORY`.
     """
 
@@ -273,11 +272,10 @@ class ColumnStore:
         types: Mapping[Hashable, np.dtype[Any]],
         expected: Mapping[Hashable, int] | None = None,
         *,
-        filled: bool = False,
         in_memory: int | None = None,
     ) -> None:
         self._in_memory = IN_MEMORY if in_memory is None else in_memory
-        self._types, self._filled = dict(types), filled
+        self._types = dict(types)
         self._files = {key: f"{number}.column" for number, key in enumerate(types)}
         self._places = {key: _Place(self._files[key], dtype) for key, dtype in types.items()}
         self._expected: dict[Hashable, int] = {}
@@ -317,7 +315,7 @@ class ColumnStore:
         """Move a column into an array for at least so many numbers, and for twice as many as it was made for."""
         array_now = self._arrays[key]
         size = max(least, 2 * array_now.size, self._expected_size(key))
-        if self._filled and not array_now.size and self._folder is None and size * array_now.itemsize < _LARGE:
+        if not array_now.size and self._folder is None and size * array_now.itemsize < _LARGE:
             self._grow_together(key, size)
             return
         array = np.empty(size, array_now.dtype)

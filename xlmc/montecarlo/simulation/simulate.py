@@ -261,7 +261,7 @@ class _Gathered:
         columns = (*self._inputs.values(), *self._prior.values(), *self._forecasts.values())
         expected = self._expected(trials) | dict.fromkeys(self._prior.values(), min(PRIOR_TRIALS, trials))
         types: dict[Hashable, np.dtype[Any]] = {("trial", 0): whole, **dict.fromkeys(columns, real)}
-        self._keeper = ColumnStore(types, expected, filled=not model.filters, in_memory=in_memory)
+        self._keeper = ColumnStore(types, expected, in_memory=in_memory)
         self._most = trials
         self._prior_trials, self._prior_is_inputs = 0, True
         self._all_accepted = True

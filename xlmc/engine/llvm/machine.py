@@ -63,6 +63,7 @@ class Machine:
         fused: whether it multiplies and adds in one instruction, rounding once.
         triple: its kind, in LLVM's words.
         multiplies_52_bits: whether it adds the halves of products of eight numbers of 52 bits in one instruction each.
+        many_wide_registers: whether it has 32 registers of eight numbers each.
         flushes: whether it makes 0 of numbers that are too small for Excel.
     """
 
@@ -72,6 +73,7 @@ class Machine:
         self.triple = triple = binding.get_default_triple()
         self.fused = "+fma" in features.split(",") or triple.startswith(("aarch64", "arm64"))
         self.multiplies_52_bits = {"+avx512ifma", "+avx512dq"} <= {*features.split(",")} and triple.startswith("x86_64")
+        self.many_wide_registers = "+avx512f" in features.split(",")
         self.flushes = flushes(triple)
 
     def _target(self) -> Any:

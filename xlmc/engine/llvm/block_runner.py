@@ -73,9 +73,10 @@ class BlockParts:
         return {position: node for position, node in enumerate(self.filters) if node is not None}
 
     @property
-    def computed_late(self) -> frozenset[int]:
-        """The nodes that are written on the survivors."""
-        return frozenset(node for loop in self.late for node in loop.stores)
+    def of_kept(self) -> frozenset[int]:
+        """The nodes that are written on the trials that are kept: all are where nothing is rejected."""
+        loops = self.late if self.rejecting else (*self.first, *self.late)
+        return frozenset(node for loop in loops for node in loop.stores)
 
 
 def block_parts(
@@ -127,6 +128,7 @@ class NativeBlockRunner:
         block: int,
     ) -> None:
         self._parts, self._draw, self._names = parts, draw, tuple(names)
+        self._rejecting, self._of_kept = parts.rejecting, parts.of_kept
         self._runs = self._careful = 0
         self._chunk = gcd(_trials_in_chunk(len(self._names) + len(set(parts.slots.values()))), block)
         rows = _aligned_rows(len(self._names), self._chunk + 8)[:, : self._chunk]  # apart, for the cache's sake
@@ -141,7 +143,8 @@ class NativeBlockRunner:
             [*_aligned_rows(len(parts.forecasts), block)],
         )
         self._wrong = np.zeros((2, self._chunk), np.uint8)
-        f = len(parts.rejecting)
+        f, rejecting = len(self._rejecting), [*self._rejecting]
+        self._among_filters = np.ix_(rejecting, rejecting) if f else None
         self._counts = np.zeros(f * (f + 1) // 2 + f, np.int64)
         rows_of, columns_of = np.maximum(*np.indices((f, f))), np.minimum(*np.indices((f, f)))
         self._pairs = rows_of * (rows_of + 1) // 2 + columns_of
@@ -168,7 +171,7 @@ class NativeBlockRunner:
         if inputs:
             self._words[self._gathers] += len(self._names)
         into = self._block_memory
-        if block_memory is not None and not self._parts.rejecting and trials == self._trials.size:
+        if block_memory is not None and not self._rejecting and trials == self._trials.size:
             given = block_memory()
             into = replace(given, forecasts=[*given.forecasts, *self._block_memory.forecasts[len(given.forecasts) :]])
             targets = list(self._targets(into))
@@ -191,13 +194,13 @@ class NativeBlockRunner:
         m = self._run(self._address, chunks) if chunks else 0
         if m < 0:
             return None
-        pairs, alone = self._counts[self._pairs], self._counts[self._counts.size - len(self._parts.rejecting) :].copy()
+        pairs, alone = self._counts[self._pairs], self._counts[self._counts.size - len(self._rejecting) :].copy()
         if rest:
             self._words[self._listed] += np.uint64(m * self._trials.itemsize)
             more = self._run(self._address, 1)
             if more < 0:
                 return None
-            if self._parts.rejecting:
+            if self._rejecting:
                 self._trials[m : m + more] += chunks * self._chunk
                 more = int(np.searchsorted(self._trials[m : m + more], trials))
                 rejected = self._rejected(rest)
@@ -210,7 +213,7 @@ class NativeBlockRunner:
 
     def _rejected(self, n: int) -> Counts:
         """1 where a filter rejects, of the first `n` trials of the last chunk: `(f, n)`."""
-        nodes = self._parts.rejecting.values()
+        nodes = self._rejecting.values()
         return np.array([self._memory.of(node, self._chunk)[:n] == 0 for node in nodes]).astype(np.int64)
 
     def _targets(self, block_memory: BlockMemory) -> Iterable[tuple[int, Floats]]:
@@ -230,10 +233,10 @@ class NativeBlockRunner:
     ) -> AcceptedBlock:
         parts = self._parts
         accepted = self._accepted if block_memory.accepted is None else block_memory.accepted
-        f, rejecting = len(parts.filters), list(parts.rejecting)
+        f = len(parts.filters)
         together, only = np.zeros((f, f), np.int64), np.zeros(f, np.int64)
-        if rejecting:
-            together[np.ix_(rejecting, rejecting)], only[rejecting] = pairs, alone
+        if self._among_filters is not None:
+            together[self._among_filters], only[[*self._rejecting]] = pairs, alone
         return AcceptedBlock(
             np.add(self._trials[:m], start, out=accepted[:m]),
             {name: block_memory.draws[name][:m] for name in self._names} if inputs else {},
@@ -258,14 +261,14 @@ class NativeBlockRunner:
         first, late = (
             table.add_pairs([(loop.call.address, 0) for loop in loops]) for loops in (parts.first, parts.late)
         )
-        filters = [table.add(_address_of(self._memory.of(node, self._chunk))) for node in parts.rejecting.values()]
+        filters = [table.add(_address_of(self._memory.of(node, self._chunk))) for node in self._rejecting.values()]
         survivors, trials, counts = (table.add(_address_of(a)) for a in (self._survivors, self._trials, self._counts))
         lists = []
         for begin, loops, wrong in zip((first, late), (parts.first, parts.late), self._wrong, strict=True):
             for number, loop in enumerate(loops):
                 nodes = [*(load.operand.node for load in loop.loads), *loop.stores]
                 lists.append((begin + 2 * number + 2, self._add_list(table, nodes, wrong, loop.numbers)))
-        gathered = [node for node in self._column if node not in parts.computed_late]
+        gathered = [node for node in self._column if node not in self._of_kept]
         self._listed = trials
         self._gathers = gathers = table.add(len(gathered))
         for node in gathered:
@@ -305,7 +308,7 @@ class NativeBlockRunner:
         node = self._parts.dag.nodes[node_id]
         if isinstance(node, Input):
             self._add_draw_address(table, node.name)
-        elif node_id in self._column and node_id in self._parts.computed_late:
+        elif node_id in self._column and node_id in self._of_kept:
             table.by_accepted.append(self._add_forecast_address(table, node_id))
         else:
             table.add(_address_of(self._memory.of(node_id, self._chunk)))

@@ -205,9 +205,6 @@ _RESERVED: Final = 1.5
 
 Array = NDArray[Any]
 
-_LARGE: Final = 1 << 22
-"""Bytes of an array from which on NumPy asks the system for large pages: many small ones take ten times as long."""
-
 
 @dataclass(slots=True)
 class _Place:
@@ -315,7 +312,7 @@ class ColumnStore:
         """Move a column into an array for at least so many numbers, and for twice as many as it was made for."""
         array_now = self._arrays[key]
         size = max(least, 2 * array_now.size, self._expected_size(key))
-        if not array_now.size and self._folder is None and size * array_now.itemsize < _LARGE:
+        if not array_now.size and self._folder is None:
             self._grow_together(key, size)
             return
         array = np.empty(size, array_now.dtype)
@@ -323,7 +320,11 @@ class ColumnStore:
         self._arrays[key] = array
 
     def _grow_together(self, key: Hashable, size: int) -> None:
-        """Make arrays for so many numbers, in one piece of memory: for a column, and for those that will be as long."""
+        """Make arrays for so many numbers, in one piece of memory: for a column, and for those that will be as long.
+
+        From 4 MB on NumPy asks the system for large pages; those at the ends of a piece are small ones, which take ten
+        times as long.
+        """
         expected = self._expected.get(key)
         alike = [other for other, rows in self._expected.items() if rows == expected and not self._arrays[other].size]
         # An odd number of lines of the cache: else the same rows of all columns would have the same place in it.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from functools import cache
 
 import mpmath
@@ -15,6 +16,8 @@ from xlmc.excel.functions.denormals import tiny_to_zero
 
 pytest.importorskip("llvmlite")
 
+from xlmc.engine.llvm.program import JitProgram
+from xlmc.engine.numpy.numpy_engine import NumpyProgram
 
 LIMIT = 2.0**27
 
@@ -188,6 +191,44 @@ def test_remainders_are_exact(compiled):
     found = compiled({"B1": "=MOD(A1,A2)"}, ("A1", "A2"))(x, divisor)[0]
     expected = tiny_to_zero(np.remainder(tiny_to_zero(x), divisor))
     np.testing.assert_array_equal(found.view(np.int64), expected.view(np.int64))
+
+
+def dividends(divisor):
+    """Of any size, zeros, and those whose quotients come closest to halfway between two doubles.
+
+    Let y be the odd part of the divisor, of b bits, and m of 54 bits, odd: m is halfway between two doubles. If m·y is
+    -k modulo 2^(b + 1), x = (m·y + k) / 2^(b + 1) is whole, and x/y·2^(b + 1) lies k/y from m.
+    """
+    whole = abs(Fraction(divisor).numerator)
+    y = whole // (whole & -whole)
+    bits = y.bit_length() + 1
+    near = []
+    for k in range(-1501, 1502, 2):
+        m = -k * pow(y, -1, 2**bits) % 2**bits
+        m += 2**bits * int(ARC_GENERATOR.integers(0, 2 ** (54 - bits), endpoint=False))
+        near.append(float((m * y + k) >> bits))
+    found = np.concatenate([SIZES[SIZES > 1e-240], near, np.nextafter(near, 0), np.nextafter(near, np.inf), [0.0]])
+    return np.concatenate([found, -found])
+
+
+@pytest.mark.parametrize("divisor", [100, 12, -12, 3, 5280, 32.174, 1e-9, 7e15, 1 + 2**-52, 2 - 2**-52, 0.1, 64])
+def test_quotients_by_constants_are_exact(compiled, divisor):
+    """To the last bit, and with the sign of a zero."""
+    x = dividends(divisor)
+    x = x[np.abs(x) < 1e290]
+    found = compiled({"B1": f"=A1/{divisor!r}"})(x)[0]
+    np.testing.assert_array_equal(found.view(np.int64), (x / divisor).view(np.int64))
+
+
+@pytest.mark.parametrize("divisor", [100, -1e15, 1e-9, 1e-200])
+@pytest.mark.parametrize("number", [1e-242, 1e-307, 2.3e-308, 1e308])
+def test_quotients_at_the_edges_are_those_of_the_numpy_engine(lower, divisor, number):
+    """Also where the steps between are too small or too large for a double."""
+    lowering, targets = lower({"B1": f"=A1/{divisor!r}"}, ["A1"], ["B1"])
+    draws = {"A1": number * np.array([1.0, -1.0, 1.2345678, 1.3])}
+    programs = [JitProgram(lowering, targets, [], frozenset()), NumpyProgram.of(lowering, targets, [], frozenset())]
+    jit, numpy = (each.evaluator(4).filters(draws, 4)[0] for each in programs)
+    assert [jit.codes is None, *jit.values] == [numpy.codes is None, *numpy.values]
 
 
 CELLS = {

@@ -61,8 +61,6 @@ _NO_FRACTION: Final = 2.0**52
 _TINY_DIVISOR: Final = 1e-290
 
 _LEAST_DIVISOR: Final = 2.0**-64
-_TINY_DIVIDEND_BITS: Final = (1023 - 800) << 52
-"""Of 2^-800; what is left of it by a divisor of 64 bits is no number below 2^-1022. See `_quotient`."""
 
 _LARGEST_ANGLE: Final = 2.0**27
 """Excel refuses the sine of a larger angle: the trial is computed again."""
@@ -154,21 +152,16 @@ def _instruction(name: str, *absorbs: int) -> _Row:
 def _quotient(body: Emitter, parts: Sequence[Any]) -> Any:
     """Emit a division; by a number in the code, without the slow instruction for it.
 
-    That is exact where no step of it is too small for a double: the trials of smaller numbers are computed again.
+    The trials of numbers that are too small for that are computed again.
     """
     dividend, divisor = parts
     known = divisor.constant if isinstance(divisor, ir.Constant) else 0.0
     if not _LEAST_DIVISOR <= abs(known) <= 1 / _LEAST_DIVISOR:
         return body.builder.fdiv(dividend, divisor)
-    body.flag(_is_tiny(body, dividend))
-    return body.of_doubles(Arithmetic.quotient, dividend, known)
-
-
-def _is_tiny(body: Emitter, number: Any) -> Any:
-    """Whether a number other than 0 is below `_TINY_DIVIDEND` in size."""
-    builder, one = body.builder, ir.Constant(_INTEGER, 1)
-    twice = builder.shl(builder.bitcast(number, _INTEGER), one)  # without its sign
-    return builder.icmp_unsigned("<", builder.sub(twice, one), ir.Constant(_INTEGER, _TINY_DIVIDEND_BITS << 1))
+    found, too_small = body.of_doubles(Arithmetic.quotient, dividend, known)
+    if too_small is not None:
+        body.flag(too_small)
+    return found
 
 
 def _comparison(relation: str) -> _Row:

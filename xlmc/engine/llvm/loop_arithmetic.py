@@ -69,8 +69,9 @@ class Arithmetic:
         """Emit x/divisor, rounded as a division rounds it, and whether x is too small for that; None if it never is.
 
         The rounded product with the rounded reciprocal, corrected once, is less than a unit of the last bit off; so the
-        second correction rounds it correctly (Markstein). These take less time than the instruction for a division.
-        They are exact where no step of theirs is below 2^-1022: so `divisor` is from 2^-64 to 2^64 in size.
+        second correction rounds it correctly (Markstein's lemma: Russinoff, "FMA-Based Division", 13.1). All that takes
+        less time than the instruction for a division. It is exact where no step is below 2^-1022: so `divisor` is from
+        2^-64 to 2^64 in size.
         """
         if not self._fused:
             return self.div(x, self.number(divisor)), None

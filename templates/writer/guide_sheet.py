@@ -11,7 +11,7 @@ from templates.writer.styles import Styles, legend
 
 __all__ = ["draw_guide"]
 
-_WIDTHS = (48, 124)
+_WIDTHS = (46, 130)
 _GAP = 6.0
 
 

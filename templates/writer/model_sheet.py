@@ -18,7 +18,7 @@ from templates.writer.styles import Styles
 __all__ = ["draw_model"]
 
 _HEADERS = ("Quantity", "Symbol", "Cell name", "Value", "Units", "Equation", "Source", "Note")
-_WIDTHS = (48, 14, 16, 11, 9, 51, 22, 60)
+_WIDTHS = (48, 14, 16, 11, 9, 57, 24, 67)
 _TEXT_COLUMNS = (0, 5, 6, 7)
 _LOOK = {Role.STEP: "step", Role.ANSWER: "answer", Role.CHECK: "check"}
 _SUBTITLE = (

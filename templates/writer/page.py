@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import ceil
-from textwrap import wrap
 
 from xlsxwriter.format import Format
 from xlsxwriter.worksheet import Worksheet
@@ -12,6 +11,7 @@ from xlsxwriter.worksheet import Worksheet
 from templates.vehicles import label_formula, names_a_vehicle, shown_label
 from templates.writer.cached import Values
 from templates.writer.styles import Styles
+from xlmc.outputs.sheets.text_lines import line_count
 
 __all__ = [
     "add_table",
@@ -31,10 +31,12 @@ _POINTS = 0.75
 """In a pixel."""
 _LANDSCAPE, _UPRIGHT = (748.0, 547.0), (568.0, 727.0)
 """Width and height of a letter page within the margins, in points."""
-_SMALLEST = 0.565
-"""The least scale: letters of 11 points are then 6.2 points high."""
-_LETTERS = 1.12
-"""Letters of running text in one unit of column width, which is the width of a digit."""
+_SMALLEST = 0.49
+"""The least scale, where that spares a page: letters of 11 points are then 5.4 points high."""
+_CERTAIN = 0.96
+"""The part of a cell that letters are taken to fill: programs break a line somewhat sooner on paper."""
+_INDENT = 1.5
+"""The digits that an indent takes."""
 _ROOMY = ("Twelve chars",) * 9
 """Names of vehicles for which a row has room."""
 _FOLLOWS = "This label follows the name of the {of} at the top of sheet Inputs. Type over it only to change this one."
@@ -77,7 +79,7 @@ def fit_row(sheet: Worksheet, row: int, texts: Sequence[tuple[str, float]]) -> N
 
     LibreOffice does not do so by itself when it opens the file. There is room for vehicles with longer names.
     """
-    lines = max(len(wrap(shown_label(text, _ROOMY), int(_LETTERS * width) - 1)) for text, width in texts)
+    lines = max(line_count(shown_label(text, _ROOMY), _CERTAIN * width - _INDENT) for text, width in texts)
     sheet.set_row(row, _LINE * max(lines, 1) + 1)
 
 

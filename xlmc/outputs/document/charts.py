@@ -25,6 +25,7 @@ __all__ = [
     "influence_charts",
     "limit_chart",
     "limit_chart_of_ranges",
+    "moved_most",
     "shape_chart",
     "shares_chart",
     "tornado_chart",
@@ -33,6 +34,9 @@ __all__ = [
 
 SHARE: Final = Form(Kind.PERCENT)
 """How shares are written."""
+
+_MOST_MOVED: Final = 6
+"""Forecasts in one chart of changes: more lines, and their names, leave no room for one another."""
 
 
 def shape_chart(simulation: RunResult, name: str) -> Chart | None:
@@ -99,7 +103,7 @@ def limit_chart(limit: FilterLimit, indexes: list[int], unit: str, form: Form = 
         form: how changes of them are written.
     """
     changes = {limit.slopes[index].forecast: [p.answers[index].change for p in limit.points] for index in indexes}
-    return _moved("Change of each mean", limit, changes, _change("Change of the mean", unit), form)
+    return _moved(_of_means(limit, indexes), limit, changes, _change("Change of the mean", unit), form)
 
 
 def width_of_range(forecast: ForecastSensitivity, now: LimitAnswer) -> float:
@@ -107,15 +111,39 @@ def width_of_range(forecast: ForecastSensitivity, now: LimitAnswer) -> float:
     return 1.0 if forecast.form.kind is Kind.YES_NO else now.high.value - now.low.value
 
 
-def limit_chart_of_ranges(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> Chart:
+def limit_chart_of_ranges(
+    limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity], indexes: list[int]
+) -> Chart:
     """Chart the same of forecasts of any units: each change as a part of the forecast's central range."""
-    now = next(point for point in limit.points if point.limit == limit.limit).answers
-    widths = {each.forecast: width_of_range(forecasts[each.forecast], each) for each in now}
-    changes = {
-        slope.forecast: [_part(each.answers[index].change, widths[slope.forecast]) for each in limit.points]
-        for index, slope in enumerate(limit.slopes)
-    }
-    return _moved("Change of each mean", limit, changes, "Change of the mean, of the central range", SHARE)
+    changes = {limit.slopes[index].forecast: _parts_of_range(limit, forecasts, index) for index in indexes}
+    return _moved(_of_means(limit, indexes), limit, changes, "Change of the mean, of the central range", SHARE)
+
+
+def moved_most(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity]) -> list[int]:
+    """Return the indexes of the forecasts whose means move most, as parts of their central ranges, in their order: as
+    many as a chart has room for.
+    """
+
+    def farthest(index: int) -> float:
+        parts = (abs(each.value) for each in _parts_of_range(limit, forecasts, index))
+        return max(filter(math.isfinite, parts), default=0.0)
+
+    return sorted(sorted(range(len(limit.slopes)), key=farthest, reverse=True)[:_MOST_MOVED])
+
+
+def _of_means(limit: FilterLimit, indexes: list[int]) -> str:
+    """Return the title of a chart of changes: of all forecasts that have one, or of those that move most."""
+    few = len(indexes) == _MOST_MOVED < len(limit.slopes)
+    return f"Change of the {_MOST_MOVED} means that move most" if few else "Change of each mean"
+
+
+def _parts_of_range(
+    limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity], index: int
+) -> list[Estimate]:
+    """Return the changes of a forecast's mean as parts of its central range with the limit as it is."""
+    now = next(point for point in limit.points if point.limit == limit.limit).answers[index]
+    width = width_of_range(forecasts[now.forecast], now)
+    return [_part(each.answers[index].change, width) for each in limit.points]
 
 
 def acceptance_chart(limit: FilterLimit) -> Chart:

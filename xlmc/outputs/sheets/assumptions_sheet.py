@@ -51,7 +51,7 @@ _STATISTICS = 10
 _NAMED = 3
 """Columns that say what the assumption is: lines begin in the first, the last has its base case and its cell."""
 _SHAPE = _NAMED + 2 + _STATISTICS
-WIDTHS = (32, 9.5, 12.5, 10.5, 7, *(8, 6.1) * (_STATISTICS // 2), 13.5)
+WIDTHS = (34.5, 9.5, 12.5, 10.5, 7, *(8, 6.1) * (_STATISTICS // 2), 13.5)
 _LINES = 3
 _ROW = 14.25
 _GAP = 6.0
@@ -86,6 +86,7 @@ def write_assumptions(page: Page, book: Workbook, simulation: RunResult, curves:
     for assumption in simulation.model.assumptions:
         page.may_begin()
         _write_assumption(page, simulation, assumption)
+    end = page.row
     page.sheet.freeze_panes(HEADER + 1, 1)
     _draw_shapes(page, book, simulation, curves)
     write_blocks(page, correlation_blocks(simulation), last=_READABLE)
@@ -93,7 +94,7 @@ def write_assumptions(page: Page, book: Workbook, simulation: RunResult, curves:
     sentences = [meaning_of_marks(), _CHANGE] if simulation.filters_act else []
     for sentence in (*sentences, *assumption_remarks(simulation)):
         page.wide(sentence, "paragraph", _READABLE)
-    page.set_up_printing(name, repeat=HEADER)
+    page.set_up_printing(name, repeat=HEADER, repeat_to=end)
 
 
 def _draw_shapes(page: Page, book: Workbook, simulation: RunResult, curves: Curves) -> None:

@@ -11,7 +11,7 @@ from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
 from xlmc.outputs.document.colours import DARK, LIGHT
 from xlmc.outputs.histogram import Figure, Histogram
-from xlmc.outputs.sheets.styles import Reference, across, finish, upwards
+from xlmc.outputs.sheets.styles import Reference, across, finish, no_reference, upwards
 
 if TYPE_CHECKING:
     from xlsxwriter.chart_column import ChartColumn
@@ -90,7 +90,11 @@ def _rows(bins: Histogram) -> Iterator[list[Shown]]:
         edges = [Shown(float(edge), bins.edge_format) for edge in (low, high)]
         if bins.names is not None:
             edges = [cells.BLANK, cells.BLANK]
-        yield [Shown(label), *edges, *(cells.count(int(count)) for count in (inside, outside, inside + outside))]
+        yield [
+            Shown(_unbroken(label)),
+            *edges,
+            *(cells.count(int(count)) for count in (inside, outside, inside + outside)),
+        ]
 
 
 def _rest(bins: Histogram) -> Iterator[tuple[str, int]]:
@@ -102,8 +106,20 @@ def _rest(bins: Histogram) -> Iterator[tuple[str, int]]:
     yield "All", int(bins.inside.sum() + bins.outside.sum()) + bins.below + bins.above
 
 
-def histogram_chart(book: Workbook, at: BinsAt, bins: Histogram) -> ChartColumn:
-    """Chart a histogram. Its texts are references to cells, so that none can be taken for a formula."""
+def _unbroken(label: str) -> str:
+    """Write a label's sign as U+2212: behind a hyphen LibreOffice breaks it, and shows -80 as 80 below a dash."""
+    return f"−{label[1:]}" if label[:1] == "-" else label
+
+
+def histogram_chart(book: Workbook, at: BinsAt, bins: Histogram, units: str | None = None) -> ChartColumn:
+    """Chart a histogram. Its texts are references to cells, so that none can be taken for a formula.
+
+    Args:
+        book: the workbook.
+        at: where its bins stand.
+        bins: what is drawn.
+        units: below a small chart, which has room for no more, and for no legend; by default it says what bars are.
+    """
     chart = book.add_chart({"type": "column", "subtype": "stacked"})
     only_inside = not bins.outside.any()
     for column, colour in zip(_COUNTS[:1] if only_inside else _COUNTS, (DARK, LIGHT), strict=False):
@@ -118,7 +134,11 @@ def histogram_chart(book: Workbook, at: BinsAt, bins: Histogram) -> ChartColumn:
             }
         )
     marks = {"interval_unit": bins.step, "interval_tick": bins.step}
-    chart.set_x_axis(across(at.cell(at.header - 1), **marks))
+    small = units is not None
+    below = across(at.cell(at.header - 1), **marks)
+    if small:
+        below |= {"name": no_reference(units or "")}
+    chart.set_x_axis(below)
     chart.set_y_axis(upwards("Accepted trials", min=0))
-    finish(chart, at.cell(at.header - 2), legend=not only_inside)
+    finish(chart, at.cell(at.header - 2), legend=not (only_inside or small))
     return chart

@@ -28,14 +28,18 @@ if TYPE_CHECKING:
 
 __all__ = ["WIDTHS", "Drawing", "place_drawings", "write_charts"]
 
-_ACROSS = 2
-_COLUMNS = 9
-"""Drawings side by side, and the columns of the sheet that each takes."""
+_COLUMNS = 18
+"""Columns of the sheet, of which drawings side by side take as many each."""
 
 _PRINTED = "The cumulative charts stand behind the others and are not printed, unless you clear the print area."
 
+_SMALL = "Bars inside the central range of each forecast are dark; each bar is labelled at its lower end."
+
 CHART_ROWS = 16
 """Rows of the sheet that a chart covers: a page has room for three such charts with their captions."""
+
+_MANY, _SMALL_ROWS = 6, 10
+"""More histograms than these stand three side by side, each covering so many rows: a page has room for twelve."""
 
 _GAP = 8
 """Points below a caption."""
@@ -43,11 +47,13 @@ _GAP = 8
 _OFFSET = 3
 """Pixels above a chart, so that its frame is not drawn on the page before."""
 
-_WIDTH = 548
-"""Pixels of a chart: what its columns have, but for a gap."""
+_GAP_ACROSS = 10
+"""Pixels between charts side by side."""
 
 _FIRST = 3
-WIDTHS = (8.14,) * (_ACROSS * _COLUMNS)
+WIDTHS = (8.14,) * _COLUMNS
+_PIXELS = 62
+"""Of a column."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -78,37 +84,47 @@ def write_charts(
         page.wide(first_forecasts("Charts are drawn of", len(simulation.detailed), left_out), "remark", len(WIDTHS) - 1)
     if not figures:
         page.put(page.row, 0, Shown("No forecast has a number in an accepted trial: nothing to draw.", look="alarm"))
+    small = len(figures) > _MANY
     drawings = [
-        Drawing(histogram_chart(book, at, figure.bins), figure.caption)
+        Drawing(histogram_chart(book, at, figure.bins, figure.answer.units if small else None), figure.caption)
         for figure, at in zip(figures, bins, strict=True)
     ]
-    place_drawings(page, [*drawings, *_comparison_drawings(book, curves, simulation, figures)])
+    comparisons = _comparison_drawings(book, curves, simulation, figures)
+    if small:
+        page.wide(_SMALL, "remark", len(WIDTHS) - 1)
+        place_drawings(page, drawings, _SMALL_ROWS, across=3)
+        place_drawings(page, list(comparisons))
+    else:
+        place_drawings(page, [*drawings, *comparisons])
     printed = page.row
     place_drawings(page, list(_cumulative_drawings(book, curves, simulation, figures)))
     page.set_up_printing(name, printed=printed, columns=(0, len(WIDTHS) - 1))
 
 
-def place_drawings(page: Page, drawings: Sequence[Drawing], rows: int = CHART_ROWS) -> None:
-    """Put charts with their captions on the sheet, two side by side.
+def place_drawings(page: Page, drawings: Sequence[Drawing], rows: int = CHART_ROWS, across: int = 2) -> None:
+    """Put charts with their captions on the sheet.
 
     Args:
         page: the sheet.
         drawings: the charts.
         rows: how many rows of the sheet each is high.
+        across: how many stand side by side.
     """
-    for start in range(0, len(drawings), _ACROSS):
+    for start in range(0, len(drawings), across):
         page.may_begin()
-        _place_row(page, drawings[start : start + _ACROSS], rows)
+        _place_row(page, drawings[start : start + across], rows, _COLUMNS // across)
 
 
-def _place_row(page: Page, drawings: Sequence[Drawing], rows: int) -> None:
+def _place_row(page: Page, drawings: Sequence[Drawing], rows: int, columns: int) -> None:
+    """Put charts side by side that cover so many rows and columns each."""
+    size = {"width": columns * _PIXELS - _GAP_ACROSS, "height": int(rows * ROW / 0.75) - 2 * _OFFSET}
     starts, captions = [], []
     for column, drawing in enumerate(drawings):
-        left = column * _COLUMNS
+        left = column * columns
         options = {"object_position": 1, "y_offset": _OFFSET, "description": drawing.caption}
-        drawing.chart.set_size({"width": _WIDTH, "height": int(rows * ROW / 0.75) - 2 * _OFFSET})
+        drawing.chart.set_size(size)
         page.sheet.insert_chart(page.row, left, drawing.chart, options)
-        starts += [left, left + _COLUMNS - 1]
+        starts += [left, left + columns - 1]
         captions += [Shown(drawing.caption, look="caption"), Shown("", look="caption")]
     page.row += rows
     page.line(captions, starts, starts[-1])

@@ -10,7 +10,12 @@ from typing import TYPE_CHECKING, Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.number_text import count_text
-from xlmc.outputs.document.charts import acceptance_chart, limit_chart, limit_chart_of_ranges
+from xlmc.outputs.document.charts import (
+    acceptance_chart,
+    limit_chart,
+    limit_chart_of_ranges,
+    moved_most,
+)
 from xlmc.outputs.document.content.limits import (
     NOT_MOVED,
     acceptance_table,
@@ -56,6 +61,8 @@ _MOVED: Final = (
     "Charts: how far each forecast's mean moves from that with the limit as it is; whiskers are standard errors of the "
     "change. Other filters and limits stay."
 )
+_LINES_AT: Final = {"x": 0.14, "y": 0.14, "width": 0.46, "height": 0.56}
+"""Where the lines of such a chart stand, in parts of it: LibreOffice would leave them what long names do not take."""
 _LIMIT, _CHANGE, _OF_RANGE = 1, 4, 10
 """Columns of the long table."""
 
@@ -111,15 +118,17 @@ def _write_limit(
 def _moved_chart(
     book: Workbook, limit: FilterLimit, tables: list[TableAt], forecasts: Mapping[str, ForecastSensitivity]
 ) -> Captioned:
-    shown = [forecasts[slope.forecast] for slope in limit.slopes]
+    indexes = moved_most(limit, forecasts)
+    shown = [forecasts[limit.slopes[index].forecast] for index in indexes]
     alike = len({(each.change_units, each.form.affixes) for each in shown}) == 1
     if alike and shown[0].form.factor == 1.0:
         form = shown[0].change_form if any(shown[0].form.affixes) else PLAIN
-        chart, value = limit_chart(limit, [*range(len(shown))], shown[0].change_units, form), _CHANGE
+        chart, value = limit_chart(limit, indexes, shown[0].change_units, form), _CHANGE
     else:
-        chart, value = limit_chart_of_ranges(limit, forecasts), _OF_RANGE
-    lines = [at.line(0, (_LIMIT, value, value + 1)) for at in tables]
-    return native_chart(book, chart, lines), moved_caption(limit)
+        chart, value = limit_chart_of_ranges(limit, forecasts, indexes), _OF_RANGE
+    made = native_chart(book, chart, [tables[index].line(0, (_LIMIT, value, value + 1)) for index in indexes])
+    made.set_plotarea({"layout": _LINES_AT})
+    return made, moved_caption(limit)
 
 
 def _acceptance_chart(book: Workbook, limit: FilterLimit, at: TableAt) -> Captioned:

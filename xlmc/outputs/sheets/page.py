@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from xlmc.outputs.document.cells import LOGICAL, NONE, Shown, shown_text
 from xlmc.outputs.sheets.paper import MARGINS, lay_out
+from xlmc.outputs.sheets.text_lines import line_count
 
 if TYPE_CHECKING:
     from xlmc.outputs.sheets.exact_book import ExactSheet
@@ -33,6 +34,16 @@ _POINTS = 0.75
 _LINE = 15.0
 _HIGHEST = 409.0
 _WIDTH = 8.43
+_PADDING = 0.7
+"""The digits that fit between the columns of two cells that are one."""
+_CERTAIN = 0.96
+"""The part of a cell that letters are taken to fill: programs break a line somewhat sooner on paper."""
+_INDENT = 1.5
+_AT_THE_EDGE = frozenset({"header", "paragraph", "remark", "caption"})
+"""Looks without an indent, which takes so many digits."""
+_BOLD = frozenset({"header", "header left", "name", "warning", "alarm"})
+_CODE = 1.05
+"""How wide letters of equal width are, in digits."""
 _LARGE = 1e8
 """From here on a number may be wider than a column."""
 
@@ -189,6 +200,7 @@ class Page:
         name: str,
         *,
         repeat: int | None = None,
+        repeat_to: int | None = None,
         printed: int | None = None,
         columns: tuple[int, int] | None = None,
     ) -> None:
@@ -197,11 +209,15 @@ class Page:
         Args:
             name: of the workbook, for the foot of the page.
             repeat: the row to stand on top of every page, counted from 0.
+            repeat_to: the row behind the last that it is the heading of; what follows stays on the page of that one, so
+                that no page repeats a heading that it has no rows of.
             printed: the row behind the last that is printed, where the rest is not unless the print area is cleared;
                 by default all is printed.
             columns: the first and the last column that are printed; by default all are.
         """
         rows = (self.sheet.dim_rowmax or 0) + 1
+        if repeat_to is not None:
+            self._begins = [row for row in self._begins if row < repeat_to]
         first, last = columns or (0, self.sheet.dim_colmax or 0)
         width = _POINTS * sum(self.sheet._size_col(column) for column in range(first, last + 1))
         heights = [_POINTS * self.sheet._size_row(row) for row in range(rows)]
@@ -229,11 +245,12 @@ class Page:
             self.sheet.set_header(f"&R{_plain(self._header)}", {"margin": _EDGE})
 
     def _lines(self, shown: Shown, first: int, last: int) -> int:
-        """How many lines a text takes, of letters somewhat narrower than the digits that widths are counted in."""
+        """Return how many lines a text takes in cells that reach from column to column."""
         own = self._widths[first : last + 1]
-        width = sum(own) + _WIDTH * (last - first + 1 - len(own))
-        room = max(1.1 * width - (1.0 if shown.look == "header" else 3.0), 1.0)
-        return sum(max(1, math.ceil(length / room)) for length in map(len, str(shown.value).split("\n")))
+        width = sum(own) + _WIDTH * (last - first + 1 - len(own)) + _PADDING * (last - first)
+        room = _CERTAIN * width - (0.0 if shown.look in _AT_THE_EDGE else _INDENT)
+        bold, even = shown.look in _BOLD, _CODE if shown.look == "code" else 0.0
+        return line_count(str(shown.value), room, bold=bold, even=even)
 
 
 def cut(value: str) -> str:

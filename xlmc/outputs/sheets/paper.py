@@ -1,7 +1,7 @@
 """How a sheet is laid on paper: upright or across, how large, and where further pages begin.
 
 All lengths are in points. What is laid out fits both A4 and letter. A sheet is as wide as its page; its letters, which
-are of 11 points on the sheet, then have 6.8 points or more on paper if the sheet is no wider than `MOST_UPRIGHT` or
+are of 11 points on the sheet, then have 6.6 points or more on paper if the sheet is no wider than `MOST_UPRIGHT` or
 `MOST_ACROSS`.
 """
 
@@ -17,7 +17,7 @@ __all__ = ["MARGINS", "MOST_ACROSS", "MOST_UPRIGHT", "SMALLEST", "Layout", "lay_
 MARGINS: Final = {"left": 0.3, "right": 0.3, "top": 0.4, "bottom": 0.4}
 """In inches; the head and the foot of the page stand within them."""
 
-SMALLEST: Final = 0.615
+SMALLEST: Final = 0.6
 """The scale below which no sheet is printed that could be printed larger."""
 
 _SIDES, _ENDS = 72.0 * (MARGINS["left"] + MARGINS["right"]), 72.0 * (MARGINS["top"] + MARGINS["bottom"])

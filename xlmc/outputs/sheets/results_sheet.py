@@ -18,9 +18,9 @@ if TYPE_CHECKING:
 
 __all__ = ["WIDTHS", "write_results"]
 
-WIDTHS = (30, 9, *[9.5] * 10)
+WIDTHS = (37, 12, *[9.5] * 10)
 _LAST = 11
-_ROW = 15.75
+_ROW = 15.0
 
 
 def write_results(page: Page, simulation: RunResult) -> None:

@@ -72,8 +72,8 @@ _NAMES_WIDE, _BARS_WIDE, _TORNADO_WIDE = 0.43, 0.53, 0.4
 Without them LibreOffice wraps long names, and then leaves out every other one.
 """
 
-_PRINTED: Final = 12
-"""Forecasts whose first charts are printed: three pages."""
+_PRINTED: Final = 9
+"""Forecasts whose first charts are printed: two pages."""
 
 _CHANGES: Final = 5
 """The column of the first of the five changes."""

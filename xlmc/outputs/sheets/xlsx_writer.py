@@ -70,10 +70,14 @@ def write_blocks(page: Page, blocks: Iterable[Block], charting: Charting | None 
         last: the column to which paragraphs reach.
     """
     spaced = True
+    before: Block | None = None
     for block in blocks:
         if not (spaced or isinstance(block, Heading) or (isinstance(block, Table) and (block.title or block.caption))):
             page.row += 1
         spaced = not isinstance(block, Table)
+        if isinstance(before, Table) and isinstance(block, Table):
+            page.may_begin()
+        before = block
         match block:
             case Heading(text, _):
                 page.heading(text)

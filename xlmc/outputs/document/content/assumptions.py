@@ -107,8 +107,8 @@ def assumption_change(found: FilterEffect) -> tuple[Measured, Measured]:
 
 
 def correlation_blocks(simulation: RunResult) -> Iterator[Block]:
-    """Yield the rank correlations; nothing where there are none."""
-    met = correlations_met(simulation)
+    """Yield the rank correlations, without those of 0 between draws that are apart anyway; or nothing."""
+    met = [pair for pair in correlations_met(simulation) if pair.asked != 0.0 or pair.used is not None]
     if not met:
         return
     rows = tuple(

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import io
 import re
-import shutil
 import subprocess
 from dataclasses import dataclass
 from html import unescape
@@ -44,13 +43,7 @@ CHART = (180.0, 150.0)
 ENDS = [(1.5, 7.5), (None, 13.0), (11.0, None), (None, None)]
 """Of ranges that a person types, one for each forecast."""
 
-CALIBRI = (
-    shutil.which("fc-match") is not None
-    and "Carlito" in subprocess.run(["fc-match", "Calibri"], check=True, capture_output=True, text=True).stdout
-)
-"""Whether the machine has letters as wide as those of Calibri: columns are narrower then, and letters print larger."""
-
-CASE, MOST = (17, 30) if CALIBRI else (15, 28)
+CASE, MOST = 15, 25
 """The most pages of the case study, and of any book that belongs to the project."""
 
 OF_REPORT = {"Case number": "2026-17", "Client": '#x *b* <i> & "q"'}

@@ -76,6 +76,28 @@ def test_correlations_are_listed(make, opened, row_of):
     assert [row[9:11] for row in rows] == [(found.value, found.error)]
 
 
+def test_a_correlation_of_0_that_changes_nothing_is_not_listed(make, opened):
+    assumptions = [make.uniform(name, cell, 0.0, 1.0, base=0.5) for name, cell in (("a", "A1"), ("b", "A2"))]
+    pair = Correlation("a", "b", 0.0, make.cell("E1"))
+    run = make.simulate(
+        {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2"}, assumptions, [make.forecast("x", "B1")], correlations=[pair]
+    )
+    sheet = opened(run, "Assumptions", "Curves")["Assumptions"]
+    assert "Rank correlations of assumptions" not in [cell.value for cell in sheet["A"]]
+
+
+@pytest.mark.parametrize("count", [16, 17, 18, 19, 20, 21, 22, 40])
+def test_no_page_repeats_the_heading_without_an_assumption_below_it(make, opened, count):
+    """A page begins with an assumption, so that what is said below all of them stands on the last one's page."""
+    cells = {f"A{n}": 0.5 for n in range(1, count + 1)} | {"B1": f"=SUM(A1:A{count})"}
+    assumptions = [make.uniform(f"a{n}", f"A{n}", 0.0, 1.0, base=0.5) for n in range(1, count + 1)]
+    run = make.simulate(cells, assumptions, [make.forecast("x", "B1")], trials=50)
+    sheet = opened(run, "Assumptions", "Curves")["Assumptions"]
+    begins = [brk.id + 1 for brk in sheet.row_breaks.brk]
+    assert begins or sheet.page_setup.fitToHeight != 0
+    assert {str(sheet.cell(row, 1).value)[0] for row in begins} <= {"a"}
+
+
 def test_the_sheets_of_a_run_in_replicates(make, opened, rows_of):
     """How it was sampled stands on Results, and errors of accepted draws come from the replicates."""
     assumptions = [make.uniform(name, cell, 0.0, 1.0, base=0.5) for name, cell in (("a", "A1"), ("b", "A2"))]

@@ -63,7 +63,7 @@ def test_charts_draw_the_bins_of_their_forecast(run, book, charts):
         assert _cells(book, inside.val.numRef.f) == figure.bins.inside.tolist()
         assert _cells(book, outside.val.numRef.f) == figure.bins.outside.tolist()
         labels = [text or "" for text in _cells(book, inside.cat.strRef.f)]
-        assert labels == figure.bins.labels
+        assert labels == [label.replace("-", "−") for label in figure.bins.labels]
         assert _cells(book, inside.tx.strRef.f) == ["Inside 51 % range"]
         assert _cells(book, outside.tx.strRef.f) == ["Outside"]
         assert _cells(book, chart.title.tx.strRef.f) == [figure.name]
@@ -127,6 +127,20 @@ def test_a_forecast_that_does_not_vary_has_a_histogram_and_no_curve(make):
     assert sum(b"<c:barChart>" in kind for kind in kinds) == 2
     assert sum(b"<c:areaChart>" in kind for kind in kinds) == 2
     assert sum(b"<c:stockChart>" in kind for kind in kinds) == 0
+
+
+@pytest.mark.parametrize(("count", "across"), [(6, 2), (7, 3)])
+def test_many_histograms_stand_three_side_by_side_without_legends(make, count, across):
+    cells = {"A1": 1.0} | {f"B{n}": f"=A1*{n}" for n in range(1, count + 1)}
+    forecasts = [make.forecast(f"f{n}", f"B{n}", units=f"u{n}") for n in range(1, count + 1)]
+    run = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0, base=1.0)], forecasts, trials=50)
+    book = openpyxl.load_workbook(io.BytesIO(packed_sheets(run, "Charts", "Bins", "Curves")))
+    histograms = book["Charts"]._charts[:count]
+    assert len({chart.anchor._from.col for chart in histograms}) == across
+    assert all((chart.legend is None) == (across == 3) for chart in histograms)
+    titles = [chart.x_axis.title.tx for chart in histograms]
+    small = [title.rich.p[0].r[0].t for title in titles if not title.strRef]
+    assert small == ([f"u{n}" for n in range(1, count + 1)] if across == 3 else [])
 
 
 def test_bins_hold_every_trial_once(run, book):

@@ -202,6 +202,24 @@ def test_answers_in_different_units_are_drawn_as_shares_of_their_ranges(make):
     assert first == pytest.approx(second)
 
 
+def test_of_many_forecasts_those_that_move_most_are_drawn(make):
+    """Forecasts of one assumption move, those of another, which the filter leaves alone, do not."""
+    moves = [2, 3, 5, 6, 8, 9]
+    cells = {"A1": 0.5, "A2": 0.5} | {f"B{n}": f"=A{1 if n in moves else 2}*{n}" for n in range(1, 10)}
+    run = make.simulate(
+        cells,
+        [make.uniform(name, cell, 0.0, 1.0, base=0.5) for name, cell in (("a", "A1"), ("b", "A2"))],
+        [make.forecast(f"f{n}", f"B{n}", units=f"u{n}") for n in range(1, 10)],
+        [make.filter("f", "A1", below=0.6)],
+    )
+    packed = packed_sheets(run, "Filter limits")
+    with zipfile.ZipFile(io.BytesIO(packed)) as package:
+        texts = [package.read(n).decode() for n in package.namelist() if n.startswith("xl/charts/chart")]
+    (xml,) = (text for text in texts if "Change of the 6 means that move most" in text)
+    book = openpyxl.load_workbook(io.BytesIO(packed))
+    assert [name for name, *_ in drawn(book, xml, "tx") if name] == [f"f{n}" for n in moves]
+
+
 @pytest.mark.parametrize(("limit", "unmoved"), [(0.5, False), (5.0, True)])
 def test_changes_of_nothing_are_explained(make, limit, unmoved):
     """No trial is near a limit of 5, and 0 ± 0 is no certainty that none ever is."""

@@ -65,6 +65,18 @@ def test_six_forecasts_stand_on_a_page(make, opened):
     assert [sheet.cell(row, 2).value for row in begins] == ["f6", "f12"]
 
 
+def test_no_table_breaks_where_two_of_six_forecasts_have_no_room_on_a_page(make, opened):
+    """Thresholds and long names make both tables higher than a page together: each then begins its own."""
+    names = [f"{' '.join(['a long name'] * 30)} {n}" for n in range(7)]
+    forecasts = [make.forecast(name, f"D{n}", threshold=1.0) for n, name in enumerate(names, 1)]
+    cells = {"A1": 0.5} | {f"D{n}": f"=A1+{n}" for n in range(1, 8)}
+    run = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0, base=0.5)], forecasts, trials=50)
+    sheet = opened(run, "Statistics")["Statistics"]
+    begins = [brk.id + 1 for brk in sheet.row_breaks.brk]
+    assert len(begins) > 1
+    assert {sheet.cell(row, 1).value for row in begins} == {"Forecast"}
+
+
 def test_statistics_of_weighted_trials_are_weighted(weighted, opened, row_of):
     """The mean given the reading is 0.8; that of the trials, each counted once, is 0."""
     values, weights = weighted["y"].values, weighted.weighting.weights

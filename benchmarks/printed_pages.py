@@ -1,9 +1,9 @@
 """How many pages every shipped book takes on paper: `python benchmarks/printed_pages.py`.
 
-Each book is run by the command, which writes the result workbook, the report and the Word file. LibreOffice prints the
-workbook, without its charts, on which no page depends, and the Word file; poppler counts. Names of books limit it to
-these; `--sheets` adds the pages of each sheet. The bars: a result workbook prints on 25 pages at most, the case study
-on 15, and a report has 5 to 10 pages. Exit code 1 says that a book is beyond a bar.
+Each book is run by the command, which writes the result workbook and the report. LibreOffice prints the workbook,
+without its charts, on which no page depends, and with `--word` the report for Word; poppler counts. Names of books
+limit it to these; `--sheets` adds the pages of each sheet. The bars: a result workbook prints on 25 pages at most, the
+case study on 15, and a report has 5 to 10 pages. Exit code 1 says that a book is beyond a bar.
 
 How wide columns are, and how large letters print, depends on the fonts there are: Excel has Calibri, and a machine
 without letters as wide as its (Carlito) prints smaller ones. With `--fonts FOLDER` the workbooks are printed once more,
@@ -47,15 +47,17 @@ class Pages:
     Attributes:
         workbooks: the printed workbook by sheet, with the fonts of the machine, then with further ones.
         report: the report as PDF.
-        word: the report for Word.
+        word: the report for Word; None where it was not printed.
     """
 
     workbooks: tuple[Counter[str], ...]
     report: int
-    word: int
+    word: int | None = None
 
 
-def counted(names: Sequence[str], folder: Path, *, trials: int, fonts: Path | None = None) -> dict[str, Pages]:
+def counted(
+    names: Sequence[str], folder: Path, *, trials: int, fonts: Path | None = None, word: bool = False
+) -> dict[str, Pages]:
     """Run the books of these names and return their pages, by name.
 
     Args:
@@ -63,24 +65,26 @@ def counted(names: Sequence[str], folder: Path, *, trials: int, fonts: Path | No
         folder: where all files go.
         trials: of each run.
         fonts: a folder with a folder `fonts`, whose fonts LibreOffice is to have too.
+        word: whether the report for Word is printed, too.
     """
-    made = []
+    books, reports = [], []
     for name in names:
-        files = [folder / f"{name}{end}" for end in (".xlsx", ".pdf", "-word.docx")]
+        files = [folder / f"{name}{end}" for end in (".xlsx", ".pdf", *["-word.docx"] * word)]
         outputs = [part for file in files for part in ("-o", str(file))]
         run = [sys.executable, "-m", "xlmc", "-q", "simulate", str(BOOKS[name]), "-n", str(trials), *outputs]
         done = subprocess.run([*run, "--overwrite"], check=False, capture_output=True, text=True)
         if not all(file.exists() for file in files):
             raise SystemExit(f"{name}: {done.stderr or done.stdout}")
-        made += [_without_charts(files[0], folder / "bare"), files[2]]
-    printed = [_print(made, folder / "printed")]
+        books.append(_without_charts(files[0], folder / "bare"))
+        reports += files[2:]
+    printed = [_print([*books, *reports], folder / "printed")]
     if fonts is not None:
-        printed.append(_print(made[::2], folder / "printed with fonts", {"XDG_DATA_HOME": str(fonts)}))
+        printed.append(_print(books, folder / "printed with fonts", {"XDG_DATA_HOME": str(fonts)}))
     return {
         name: Pages(
             tuple(_by_sheet(pdfs / f"{name}.pdf") for pdfs in printed),
             _count(folder / f"{name}.pdf"),
-            _count(printed[0] / f"{name}-word.pdf"),
+            _count(printed[0] / f"{name}-word.pdf") if word else None,
         )
         for name in names
     }
@@ -135,15 +139,16 @@ def beyond(name: str, pages: Pages) -> list[str]:
 def table(found: dict[str, Pages], *, sheets: bool = False) -> str:
     """Return the counts as a table in Markdown."""
     further = max((len(pages.workbooks) for pages in found.values()), default=1) - 1
-    heads = ["workbook, pages", *["with the fonts"] * further, "report, pages", "Word, pages"]
+    word = any(pages.word is not None for pages in found.values())
+    heads = ["workbook, pages", *["with the fonts"] * further, "report, pages", *["Word, pages"] * word]
     lines = [f"| book | {' | '.join(heads)} |", f"|---|{'---:|' * len(heads)}"]
     for name, pages in found.items():
-        counts = [*(each.total() for each in pages.workbooks), pages.report, pages.word]
+        counts = [*(each.total() for each in pages.workbooks), pages.report, *[pages.word] * word]
         lines.append(f"| {name} | {' | '.join(map(str, counts))} |")
         if sheets:
             names = dict.fromkeys(sheet for each in pages.workbooks for sheet in each)
             rows = ((sheet, " | ".join(str(each[sheet]) for each in pages.workbooks)) for sheet in names)
-            lines += [f"| … {sheet} | {counts} | | |" for sheet, counts in rows]
+            lines += [f"| … {sheet} | {counts} |{' |' * (1 + word)}" for sheet, counts in rows]
     return "\n".join(lines)
 
 
@@ -153,6 +158,7 @@ def main() -> None:
     parser.add_argument("names", nargs="*", metavar="NAME", help="of a book; by default all templates and examples")
     parser.add_argument("--trials", type=int, default=20_000, help="of each run; default 20,000")
     parser.add_argument("--fonts", type=Path, metavar="FOLDER", help="print once more with those in FOLDER/fonts")
+    parser.add_argument("--word", action="store_true", help="print the reports for Word, too")
     parser.add_argument("--sheets", action="store_true", help="add the pages of each sheet")
     parser.add_argument("--keep", type=Path, metavar="FOLDER", help="leave all files in this folder")
     options = parser.parse_args()
@@ -163,7 +169,9 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) if options.keep is None else options.keep.resolve()
         folder.mkdir(parents=True, exist_ok=True)
-        found = counted(options.names or list(BOOKS), folder, trials=options.trials, fonts=options.fonts)
+        found = counted(
+            options.names or list(BOOKS), folder, trials=options.trials, fonts=options.fonts, word=options.word
+        )
     print(table(found, sheets=options.sheets))
     found_beyond = [line for name, pages in found.items() for line in beyond(name, pages)]
     print("\n".join(["", *found_beyond]) if found_beyond else "\nAll books are within the bars.")

@@ -25,7 +25,7 @@ def test_every_book_is_counted():
     ],
 )
 def test_what_is_beyond_a_bar_is_said(name, workbooks, report, expected):
-    pages = Pages(tuple(Counter({"Results": 2, "of the book": count - 2}) for count in workbooks), report, 9)
+    pages = Pages(tuple(Counter({"Results": 2, "of the book": count - 2}) for count in workbooks), report)
     assert beyond(name, pages) == expected
 
 

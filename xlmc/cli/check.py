@@ -167,10 +167,10 @@ def _show_definitions(definitions: Definitions, model: CompiledModel | None) -> 
                     s.name,
                     str(s.by),
                     s.root or "only",
-                    given_text(s.low),
-                    given_text(s.high),
+                    given_text(s.low, s.form_by),
+                    given_text(s.high, s.form_by),
                     str(s.cell),
-                    given_text(s.to),
+                    given_text(s.to, s.form),
                 )
                 for s in definitions.solves
             ],

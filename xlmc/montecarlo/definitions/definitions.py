@@ -19,7 +19,6 @@ from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.run_settings import USUAL, Settings
 from xlmc.montecarlo.definitions.stating import Kind, Role, Which
 from xlmc.montecarlo.distributions import FAMILIES, Family
-from xlmc.montecarlo.number_text import exact_text
 from xlmc.montecarlo.sampling.draws import Draw
 
 if TYPE_CHECKING:
@@ -216,6 +215,7 @@ class Forecast:
         report_to: the resolution at which it is stated, in its units; None if its error alone decides.
         kind: what its numbers are; None if the row does not say.
         role: what it is to the question asked.
+        form: how numbers in its cell are written.
     """
 
     name: str
@@ -229,6 +229,7 @@ class Forecast:
     report_to: float | None = None
     kind: Kind | None = None
     role: Role = Role.ANSWER
+    form: Form = field(default=PLAIN, compare=False, repr=False)
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -316,6 +317,8 @@ class Solve:
         high: the upper end.
         root: which of several values is taken; None to take none, and make such a trial an error.
         typed: `to`, `low` and `high`, where they are numbers -> the cell that holds it.
+        form: how `to` is written, a number of `cell`.
+        form_by: how `low` and `high` are written, numbers of `by`.
     """
 
     name: str
@@ -327,16 +330,23 @@ class Solve:
     row: Cell
     root: Which | None = None
     typed: Mapping[str, Cell] = field(default_factory=dict)
+    form: Form = field(default=PLAIN, compare=False, repr=False)
+    form_by: Form = field(default=PLAIN, compare=False, repr=False)
+
+    def form_of(self, key: str) -> Form:
+        """Return how `to`, `low` or `high` is written."""
+        return self.form if key == "to" else self.form_by
 
     def words(self, code: ErrorCode) -> str:
         """Say why a trial has no value: its cell is then this error."""
-        ends = f"{_said(self.low)} to {_said(self.high)}"
+        ends = f"{_said(self.low, self.form_by)} to {_said(self.high, self.form_by)}"
         what = "several values" if code is ErrorCode.NUM else "no value"
-        return f"{what} from {ends} make{'s' * (code is not ErrorCode.NUM)} {self.cell} equal to {_said(self.to)}"
+        made = f"make{'s' * (code is not ErrorCode.NUM)} {self.cell} equal to {_said(self.to, self.form)}"
+        return f"{what} from {ends} {made}"
 
 
-def _said(given: Parameter) -> str:
-    return str(given) if isinstance(given, Cell) else exact_text(given, typed=True)
+def _said(given: Parameter, form: Form) -> str:
+    return str(given) if isinstance(given, Cell) else form.number(given, typed=True)
 
 
 @dataclass(frozen=True, slots=True)

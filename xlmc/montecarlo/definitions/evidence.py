@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from xlmc.excel.address import Cell, InFormula
 from xlmc.excel.formula import ir
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 
 __all__ = ["ERRORS", "SIZES", "USE_IS_OFF", "Bell", "Evidence", "Law", "Within"]
 
@@ -185,6 +186,7 @@ class Evidence:
         unused: why it does not count, in words, such as `USE_IS_OFF`; empty where it does.
         weighed: a run weights its trials by it, where its error is no limit, instead of rejecting some.
         notes: the table's other columns.
+        form: how numbers in its cell, and the reading, are written.
     """
 
     name: str
@@ -197,6 +199,7 @@ class Evidence:
     unused: str = ""
     notes: Mapping[str, str] = field(default_factory=dict)
     weighed: bool = False
+    form: Form = field(default=PLAIN, compare=False, repr=False)
 
     @property
     def used(self) -> bool:

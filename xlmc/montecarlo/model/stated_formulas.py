@@ -10,7 +10,17 @@ from typing import TYPE_CHECKING, Final, TypeVar
 
 from xlmc.excel.address import Cell, host_of
 from xlmc.excel.workbook.workbook import Workbook
-from xlmc.montecarlo.definitions.definitions import Assumption, Decision, Definitions, Filter, StatedNumber
+from xlmc.montecarlo.definitions.definitions import (
+    Assumption,
+    Decision,
+    Definitions,
+    Filter,
+    Forecast,
+    Solve,
+    StatedNumber,
+)
+from xlmc.montecarlo.definitions.evidence import Evidence
+from xlmc.montecarlo.definitions.forms import PLAIN
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.cell_forms import forms_of
 
@@ -24,7 +34,7 @@ _LONGEST: Final = 40
 """Characters of a formula; a longer one is named by its cell."""
 
 Values = Callable[[Sequence[Cell]], Mapping[Cell, float]]
-R = TypeVar("R", Assumption, Filter, Decision)
+R = TypeVar("R", Assumption, Filter, Evidence, Decision)
 
 
 def with_stated_formulas(
@@ -83,9 +93,12 @@ def _assumption(
 
 def in_their_forms(workbook: Workbook, definitions: Definitions) -> Definitions:
     """Return the definitions with the forms of those of their cells that show dates, percentages or money."""
-    limits = (*definitions.filters, *definitions.forecast_filters)
-    rows: list[Assumption | Filter | Decision] = [*definitions.assumptions, *limits, *definitions.decisions]
-    cells = [*dict.fromkeys([*(host_of(each.cell) for each in rows), *_typed(definitions.scenarios)])]
+    limits = (*definitions.filters, *definitions.forecast_filters, *definitions.unused)
+    rows: list[Assumption | Filter | Forecast | Evidence | Decision] = [*definitions.assumptions, *limits]
+    rows += [*definitions.forecasts, *definitions.evidence, *definitions.decisions]
+    solved = (cell for each in definitions.solves for cell in (each.cell, each.by))
+    read = (*(each.cell for each in rows), *solved)
+    cells = [*dict.fromkeys([*map(host_of, read), *_typed(definitions.scenarios)])]
     forms = dict(zip(cells, forms_of(workbook, cells), strict=True))
     known = {cell: form for cell, form in forms.items() if form.kind is not Kind.NUMBER}
     if not known:
@@ -95,11 +108,26 @@ def in_their_forms(workbook: Workbook, definitions: Definitions) -> Definitions:
         form = known.get(host_of(each.cell))
         return each if form is None else replace(each, form=form)
 
+    def limited(each: Filter) -> Filter:
+        return row(each) if each.evidence is None else replace(row(each), evidence=row(each.evidence))
+
+    def solve(each: Solve) -> Solve:
+        form, form_by = (known.get(host_of(cell), PLAIN) for cell in (each.cell, each.by))
+        return replace(each, form=form, form_by=form_by)
+
+    def forecast(each: Forecast) -> Forecast:
+        form = known.get(host_of(each.cell), PLAIN)
+        return each if form is PLAIN or each.kind not in (None, form.kind) else replace(each, form=form)
+
     return replace(
         definitions,
         assumptions=tuple(map(row, definitions.assumptions)),
-        filters=tuple(map(row, definitions.filters)),
-        forecast_filters=tuple(map(row, definitions.forecast_filters)),
+        filters=tuple(map(limited, definitions.filters)),
+        forecast_filters=tuple(map(limited, definitions.forecast_filters)),
+        unused=tuple(map(limited, definitions.unused)),
+        forecasts=tuple(map(forecast, definitions.forecasts)),
+        evidence=tuple(map(row, definitions.evidence)),
+        solves=tuple(map(solve, definitions.solves)),
         scenarios=_scenarios_in_forms(definitions.scenarios, known),
         decisions=tuple(map(row, definitions.decisions)),
     )

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
-from typing import Final
+from typing import Final, TypeAlias
 
 from xlmc.analysis.results.statements.in_words import given_text
 from xlmc.excel.address import Cell
-from xlmc.montecarlo.definitions.definitions import Assumption, Decision, Definitions, Filter, Parameter
+from xlmc.montecarlo.definitions.definitions import (
+    Assumption,
+    Decision,
+    Definitions,
+    Filter,
+    Forecast,
+    Parameter,
+    Solve,
+)
 from xlmc.montecarlo.distributions import FAMILIES
 from xlmc.outputs.live.adjustments import BAND, LIMITS, MEASURED, SOLVED, STATED, Adjustments, Amount, own_values
 from xlmc.outputs.live.kinds import KINDS
 
 __all__ = ["changed_text", "in_words"]
+
+Formed: TypeAlias = Assumption | Filter | Forecast | Decision | Solve
+"""A row that says how its numbers are written."""
 
 _HEADINGS_OF_KINDS: Final = {spec.key: spec.heading for kind in KINDS for spec in FAMILIES[kind].parameters}
 
@@ -61,19 +72,23 @@ def changed_text(
     return f"{heading} {old} → {new}"
 
 
-def _rows_with_forms(definitions: Definitions, of: str) -> tuple[Assumption | Filter | Decision, ...]:
+def _rows_with_forms(definitions: Definitions, of: str) -> tuple[Formed, ...]:
     """Return the rows of a kind that say how their numbers are written."""
     match of:
         case "assumption":
             return definitions.assumptions
         case "filter":
             return (*definitions.filters, *definitions.forecast_filters, *definitions.unused)
+        case "forecast":
+            return definitions.forecasts
         case "decision":
             return definitions.decisions
+        case "solve":
+            return definitions.solves
     return ()
 
 
-def _amount_text(key: str, value: Parameter | Amount, row: Assumption | Filter | Decision | None = None) -> str:
+def _amount_text(key: str, value: Parameter | Amount, row: Formed | None = None) -> str:
     """Write a value: `0.75`, `51 %`; `none` for what is taken away; `on` and `off` of a switch; of a row with dates,
     percentages or money as its cell shows it.
     """
@@ -85,4 +100,8 @@ def _amount_text(key: str, value: Parameter | Amount, row: Assumption | Filter |
         return f"{given_text(value)} %" if key == "central" else given_text(value)
     if isinstance(row, Assumption):
         return row.form_of(key, value).number(value)
-    return row.form.number(value) if key in (*LIMITS, "reading", "value") else given_text(value)
+    if isinstance(row, Solve):
+        return given_text(value, row.form_of(key))
+    if key == "central":
+        return f"{given_text(value)} %"
+    return row.form.number(value) if key in (*LIMITS, "reading", "value", "threshold") else given_text(value)

@@ -109,7 +109,9 @@ def _measured(filter_: Filter) -> object:
 
 def _forecast(before: Forecast, after: Forecast) -> Iterator[str]:
     if before.threshold != after.threshold:
-        values = ["none" if each.threshold is None else given_text(each.threshold) for each in (before, after)]
+        values = [
+            "none" if each.threshold is None else given_text(each.threshold, each.form) for each in (before, after)
+        ]
         yield f"threshold {values[0]} → {values[1]}"
     if before.central != after.central:
         yield (
@@ -130,7 +132,7 @@ def _solve(before: Solve, after: Solve) -> Iterator[str]:
     for key, heading in SOLVED.items():
         old, new = getattr(before, key), getattr(after, key)
         if old != new:
-            yield f"{heading} {given_text(old)} → {given_text(new)}"
+            yield f"{heading} {given_text(old, before.form_of(key))} → {given_text(new, after.form_of(key))}"
     if (before.by, before.cell, before.root) != (after.by, after.cell, after.root):
         yield "another cell is solved for, or another value is taken"
 

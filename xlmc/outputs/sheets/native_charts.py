@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Final
 
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.number_text import percent_format, two_digit_exponent
 from xlmc.outputs.document.cells import Shown, spread_format
 from xlmc.outputs.document.colours import COLOURS, DARK, GRID, INK, LIGHT
@@ -131,7 +132,7 @@ def _lines(book: Workbook, chart: Chart, shown: Lines, at: Sequence[SeriesAt]) -
         if series.errors:
             look = {**look, "y_error_bars": {**series.whiskers, "line": {**look["line"], "width": 0.75}}}
         made.add_series({"name": series.name, "categories": series.places, "values": series.values, **look})
-    across = {"num_format": axis_format("General"), "line": AXIS, "major_gridlines": {"visible": False}}
+    across = {"num_format": _across_number(shown), "line": AXIS, "major_gridlines": {"visible": False}}
     made.set_x_axis({**axis_options(chart.across), **across, **_limits_across(shown)})
     number = "0%" if shown.share else _axis_number(shown.form_upwards, shown.heights)
     made.set_y_axis(
@@ -139,6 +140,13 @@ def _lines(book: Workbook, chart: Chart, shown: Lines, at: Sequence[SeriesAt]) -
     )
     made.set_legend({"position": "right", "font": FONT} if len(at) > 1 else {"none": True})
     return made
+
+
+def _across_number(shown: Lines) -> str:
+    """Return the format of the numbers of a horizontal axis, of dates the one of their cells."""
+    if shown.form_across.kind is Kind.DATE:
+        return shown.form_across.moment_code
+    return _axis_number(shown.form_across, shown.ends) if shown.lines else axis_format("General")
 
 
 def _limits_across(shown: Lines) -> dict[str, float]:

@@ -15,7 +15,7 @@ from xlmc.analysis.results.statements.in_words import (
 from xlmc.analysis.results.statements.run_in_words import status
 from xlmc.analysis.results.statements.scenarios_in_words import changes_text
 from xlmc.excel.address import Area, Cell
-from xlmc.montecarlo.definitions.definitions import Assumption, DataRange, Definitions, Filter, StatedNumber
+from xlmc.montecarlo.definitions.definitions import Assumption, DataRange, Definitions, Filter, Forecast, StatedNumber
 from xlmc.montecarlo.definitions.evidence import Evidence
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.scenarios import (
@@ -24,9 +24,11 @@ from xlmc.montecarlo.definitions.scenarios import (
     Drawn,
     Frozen,
     Limits,
+    Measured,
     Numbers,
     Range,
     Scenario,
+    Stated,
     Switched,
     Typed,
 )
@@ -161,6 +163,43 @@ DRAG = Cell("Inputs", 28, 4)
 )
 def test_what_a_scenario_changes(change, text):
     assert changes_text(Scenario("s", (change,)), Definitions()) == text
+
+
+DATES = Form(Kind.DATE, "yyyy-mm-dd")
+DATED = Definitions(
+    forecasts=(
+        Forecast("End", DRAG, DRAG, form=DATES),
+        Forecast("Share", DRAG, DRAG, form=Form(Kind.PERCENT, "0.0%")),
+        Forecast("Cost", DRAG, DRAG, form=Form(Kind.CURRENCY, '"$"#,##0')),
+    ),
+    filters=(Filter("Late", DRAG, DRAG, form=DATES),),
+    evidence=(Evidence("Seen", DRAG, DRAG, 46110.0, "uniform", {"plus_minus": 9.0}, form=DATES),),
+)
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        (Stated("End", {"threshold": 46130.0}), "End threshold 2026-04-18"),
+        (Stated("End", {"threshold": None}), "End without threshold"),
+        (Stated("End", {"central": 80.0}), "End central 80 %"),
+        (Stated("Share", {"threshold": 0.1}), "Share threshold 10 %"),
+        (Stated("Cost", {"threshold": 2e6}), "Cost threshold $2,000,000"),
+        (Limits("Late", {"at_most": 46130.0}), "Late at most 2026-04-18"),
+        (Measured("Seen", {"reading": 46111.0, "plus_minus": 9.0}), "Seen reading 2026-03-30 and plus minus 9"),
+        (Typed(DRAG, 46130.0, named="t", of=("xlmc_forecasts", "end", "Threshold")), "t = 2026-04-18"),
+        (Typed(DRAG, 80.0, named="t", of=("xlmc_forecasts", "end", "Range %")), "t = 80"),
+        (Typed(DRAG, 46111.0, named="t", of=("xlmc_evidence", "seen", "Reading")), "t = 2026-03-30"),
+        (Typed(DRAG, 9.0, named="t", of=("xlmc_evidence", "seen", "Plus or minus")), "t = 9"),
+    ],
+)
+def test_changes_are_written_in_the_forms_of_their_cells(change, text):
+    assert changes_text(Scenario("s", (change,)), DATED) == text
+
+
+def test_a_reading_is_written_as_its_cell_shows_it():
+    (seen,) = DATED.evidence
+    assert evidence_text(seen) == "reads 2026-03-29, uniform (Plus or minus 9): from 2026-03-20 to 2026-04-07"
 
 
 def test_several_changes_and_none():

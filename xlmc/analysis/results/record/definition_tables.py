@@ -270,10 +270,10 @@ def solve_section(simulation: RunResult) -> Section:
         (
             each.name,
             str(each.cell),
-            given_text(each.to),
+            given_text(each.to, each.form),
             str(each.by),
-            given_text(each.low),
-            given_text(each.high),
+            given_text(each.low, each.form_by),
+            given_text(each.high, each.form_by),
             each.root or "only",
         )
         for each in simulation.model.definitions.solves

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from xlmc.excel.address import Cell
 from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, DataRange, Filter, Parameter
 from xlmc.montecarlo.definitions.evidence import ERRORS, SIZES, Evidence, Within
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.number_text import exact_text, styled_text
 
 __all__ = [
@@ -26,9 +27,13 @@ def plain_text(value: Parameter) -> str:
     return str(value) if isinstance(value, Cell) else repr(float(value)).removesuffix(".0")
 
 
-def given_text(value: Parameter) -> str:
-    """Return a number as people read it, with all of its digits: `6,661`; or the cell that holds it."""
-    return str(value) if isinstance(value, Cell) else exact_text(value, typed=True)
+def given_text(value: Parameter, form: Form = PLAIN) -> str:
+    """Return a number as people read it, with all of its digits: `6,661`, a date as its cell shows it; or the cell that
+    holds it.
+    """
+    if isinstance(value, Cell):
+        return str(value)
+    return exact_text(value, typed=True) if form is PLAIN else form.number(value, typed=True)
 
 
 def parameters_text(assumption: Assumption) -> str:
@@ -86,9 +91,14 @@ def evidence_text(evidence: Evidence) -> str:
     ends_text = ""
     if isinstance(known, Within):
         ends = [("from", known.low), ("to", known.high)]
-        ends_text = ": " + " ".join(f"{word} {styled_text(end, '.6g')}" for word, end in ends if end is not None)
+        ends_text = ": " + " ".join(f"{word} {_rough(end, evidence.form)}" for word, end in ends if end is not None)
     given, weights = f" ({sizes})" if sizes else "", ", as weights" if evidence.weighed else ""
-    return f"reads {given_text(evidence.reading)}, {ERRORS[evidence.error].lower()}{given}{ends_text}{weights}"
+    reading = given_text(evidence.reading, evidence.form)
+    return f"reads {reading}, {ERRORS[evidence.error].lower()}{given}{ends_text}{weights}"
+
+
+def _rough(value: float, form: Form) -> str:
+    return styled_text(value, ".6g") if form is PLAIN else form.rough(value)
 
 
 def notes_text(notes: Mapping[str, str]) -> str:

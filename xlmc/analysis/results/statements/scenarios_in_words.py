@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Final
+from typing import Final, TypeAlias
 
 from xlmc.analysis.results.statements.in_words import given_text
-from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter
-from xlmc.montecarlo.definitions.forms import Form
+from xlmc.montecarlo.definitions.definitions import CUTOFFS, Assumption, Definitions, Filter, Forecast
+from xlmc.montecarlo.definitions.evidence import SIZES, Evidence
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.scenarios import (
     Band,
     Change,
@@ -31,8 +32,15 @@ from xlmc.montecarlo.model.cell_forms import content_in
 
 __all__ = ["changes_text"]
 
+Formed: TypeAlias = Assumption | Filter | Evidence | Forecast
+"""A row that says how its numbers are written."""
+
 _VALUE: Final = "low"
 """The key of a number that is a value of the quantity itself."""
+_CENTRAL: Final = "central"
+"""The key of a forecast's central range, in percent."""
+_NOT_IN_UNITS: Final = {**SIZES, _CENTRAL: "Range %", "report_to": "Report to"}
+"""Key of a number of evidence or of a forecast that is not in the units of its cell -> its heading."""
 
 
 def changes_text(scenario: Scenario, definitions: Definitions) -> str:
@@ -59,7 +67,7 @@ def _change_text(change: Change, definitions: Definitions) -> str:
             return f"{name} from P{show(low)} to P{show(high)}"
         case Numbers(name, values) | Limits(name, values) | Measured(name, values) | Stated(name, values):
             words = (
-                f"{key.replace('_', ' ')} {_number_of(definitions, name, key, value)}"
+                f"{key.replace('_', ' ')} {_number_of(definitions, name, key, value)}{' %' * (key == _CENTRAL)}"
                 for key, value in values.items()
                 if value is not None
             )
@@ -81,12 +89,16 @@ def _change_text(change: Change, definitions: Definitions) -> str:
 def _number_in_row(definitions: Definitions, kind: str, name: str, heading: str, value: float) -> str:
     """Write a number of a table's row, such as the High of an assumption or a limit of a filter."""
     key = _VALUE if plain(heading) == "value" else ""
-    rows: Mapping[str, Sequence[Assumption | Filter]] = {
+    rows: Mapping[str, Sequence[Formed]] = {
         "xlmc_assumptions": definitions.assumptions,
-        "xlmc_filters": definitions.filters,
+        "xlmc_filters": (*definitions.filters, *definitions.forecast_filters),
+        "xlmc_forecasts": definitions.forecasts,
+        "xlmc_evidence": definitions.evidence,
     }
     row = next((each for each in rows.get(kind, ()) if name_key(each.name) == name), None)
-    if isinstance(row, Assumption):
+    if not isinstance(row, Assumption):
+        key = next((each for each, written in _NOT_IN_UNITS.items() if plain(heading) == plain(written)), key)
+    else:
         headings = {spec.key: spec.headings for spec in row.family.parameters}
         headings |= {key: (written,) for key, written in CUTOFFS.items()}
         key = next((each for each, those in headings.items() if plain(heading) in map(plain, those)), key)
@@ -94,11 +106,14 @@ def _number_in_row(definitions: Definitions, kind: str, name: str, heading: str,
 
 
 def _number_of(definitions: Definitions, name: str, key: str, value: float) -> str:
-    """Write a number of an assumption or a filter: a parameter or a limit by its key."""
-    rows: tuple[Assumption | Filter, ...] = (*definitions.assumptions, *definitions.filters)
-    row = next((each for each in (*rows, *definitions.forecast_filters) if each.name == name), None)
+    """Write a number of an assumption, a filter, evidence or a forecast by its key."""
+    filters = (*definitions.filters, *definitions.forecast_filters, *definitions.unused)
+    rows: tuple[Formed, ...] = (*definitions.assumptions, *filters, *definitions.evidence, *definitions.forecasts)
+    row = next((each for each in rows if each.name == name), None)
     return given_text(value) if row is None else _form_in(row, key, value).number(value)
 
 
-def _form_in(row: Assumption | Filter, key: str, value: float) -> Form:
-    return row.form_of(key, value) if isinstance(row, Assumption) else row.form
+def _form_in(row: Formed, key: str, value: float) -> Form:
+    if isinstance(row, Assumption):
+        return row.form_of(key, value)
+    return PLAIN if key in _NOT_IN_UNITS else row.form

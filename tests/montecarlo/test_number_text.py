@@ -149,7 +149,7 @@ def test_exact_numbers(value, text):
 def test_counts_and_records():
     assert [count_text(n) for n in (0, 999, 1_000, 1_234_567)] == ["0", "999", "1,000", "1,234,567"]
     assert [whole_text(x) for x in (0.1 + 0.2, 200_000, 1e22, -2.0)] == ["0.30000000000000004", "200000", "1e+22", "-2"]
-    assert styled_text(0.0213, ".1%") == "2.1%"
+    assert styled_text(0.0213, ".1%") == "2.1 %"
     assert styled_text(Decimal("1234.50"), ",f") == "1,234.50"
 
 
@@ -162,7 +162,7 @@ def test_signs_of_thousands_and_decimals():
             "1.000",
             "-1.234,50",
         ]
-        assert [format_estimate(1234.5, 0.32), styled_text(0.5, ".1%")] == ["1.234,50 ± 0,32", "50,0%"]
+        assert [format_estimate(1234.5, 0.32), styled_text(0.5, ".1%")] == ["1.234,50 ± 0,32", "50,0 %"]
         assert [whole_text(0.5), exact_text(1234.5)] == ["0,5", "1.234,5"]
         with in_signs(" ", ","):
             assert number_text(1234.5) == "1 234,5"

@@ -97,4 +97,4 @@ def test_a_filled_range_in_percent_fails_in_the_accepted_trials(typed):
     friction = next(check for check in run.checks if "Friction" in check.name)
     assert friction.holds
     assert friction.failed == friction.trials == run.accepted
-    assert "20,000 of 20,000 accepted trials (100.00%) fail the check" in run.warnings[0]
+    assert "20,000 of 20,000 accepted trials (100.00 %) fail the check" in run.warnings[0]

@@ -84,12 +84,13 @@ def _styled(text: str) -> str:
 
 
 def styled_text(value: float | Decimal, form: str) -> str:
-    """Write a number by a format of Python.
+    """Write a number by a format of Python; a percentage as all others, with a space.
 
-    >>> styled_text(0.0213, ".1%")
-    '2.1%'
+    >>> styled_text(0.0213, ".1%"), styled_text(0.0213, ".2g")
+    ('2.1 %', '0.021')
     """
-    return _styled(format(value, form))
+    text = _styled(format(value, form))
+    return f"{text[:-1]} %" if form.endswith("%") else text
 
 
 def count_text(count: int) -> str:

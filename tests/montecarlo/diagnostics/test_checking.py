@@ -151,7 +151,7 @@ def test_it_is_said_that_not_all_accepted_trials_were_looked_at(checked):
     run = simulated(checked(CELLS, {"below": "C1"}), trials=40_000, keep_inputs=0)
     check = run.checks[0]
     assert check.looked_at == "the first 10,000 accepted trials"
-    assert f"of the first 10,000 accepted trials ({check.share.value:.2%}) fail the check" in check.warnings[0]
+    assert f"of the first 10,000 accepted trials ({100 * check.share.value:.2f} %) fail the check" in check.warnings[0]
 
 
 def test_without_a_base_case_the_trials_are_looked_at_alone(checked):

@@ -90,7 +90,7 @@ def test_the_sentence_gives_a_formula_that_keeps_the_numbers_together(result):
     shown = cut([170, 176, 184, 190], -180)
     (notice,) = direction_notices([result("°", shown)])
     assert "'PDOF' is a direction" in notice.message
-    assert "50.00% of the accepted trials lie beyond the jump" in notice.message
+    assert "50.00 % of the accepted trials lie beyond the jump" in notice.message
     assert "180 ° on average, with a standard deviation of 7.62 °" in notice.message
     assert "=x-360*ROUND((x-180)/360,0)" in notice.message
     assert direction_notices([result("°", [x - 360 * round((x - 180) / 360) for x in shown])]) == []

@@ -92,7 +92,7 @@ def test_errors_above_a_thousandth_are(book, level, warned):
     assert bool(run.warnings) is warned
     if warned:
         assert run.warnings == [
-            f"{run.error_trials:,} trials ({run.error_trials / 10_000:.2%}) were lost to errors in cells"
+            f"{run.error_trials:,} trials ({run.error_trials / 100:.2f} %) were lost to errors in cells"
         ]
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Final
 
 from xlmc.errors import FormulaError
@@ -39,6 +39,8 @@ _SIGNS: Final = "$€£¥₹₽₩₺₴฿₫₱₪₦"
 _CODES: Final = re.compile(
     r"\b(USD|EUR|GBP|JPY|CHF|CAD|AUD|NZD|CNY|INR|SEK|NOK|DKK|PLN|CZK|HUF|BRL|MXN|ZAR)\b|kr|zł|Kč"
 )
+_CODES_OF: Final = {"$": "USD CAD AUD NZD MXN", "€": "EUR", "£": "GBP", "¥": "JPY CNY", "₹": "INR"}
+"""Sign of money -> the codes of the currencies that it may stand for."""
 _MOMENT: Final = re.compile(r"[ymdhs]", re.IGNORECASE)
 _DAY: Final = "yyyy-mm-dd"
 _DAY_AND_TIME: Final = "yyyy-mm-dd hh:mm"
@@ -84,6 +86,16 @@ def _money_in(affix: str) -> str:
     return found[0] if found else ""
 
 
+def _are_one_currency(first: str, second: str) -> bool:
+    """Whether two texts name money alike: by one sign or code, or one by a sign and the other by a code."""
+    for one, other in ((first, second), (second, first)):
+        named = [sign for sign in _SIGNS if sign in one] + [found[0] for found in _CODES.finditer(one)]
+        codes = {code for name in named for code in (name, *_CODES_OF.get(name, "").split())}
+        if any(code in other for code in codes):
+            return True
+    return False
+
+
 def _affixes(first: str) -> tuple[str, str]:
     """Return what a section writes before and after the digits, as plain text."""
     marked = _QUOTED.sub(lambda found: "".join(part or "" for part in found.groups()), first)
@@ -103,12 +115,24 @@ class Form:
         code: the number format of the cell.
         report_to: the resolution at which they are stated; None where their error alone decides.
         date1904: whether days are counted from 1904.
+        bare: whether amounts of money stand without their sign, because the units beside them say it.
     """
 
     kind: Kind = Kind.NUMBER
     code: str = "General"
     report_to: float | None = None
     date1904: bool = False
+    bare: bool = False
+
+    def beside_units(self, units: str) -> Form:
+        """Return the form of numbers that stand beside their units, so that a currency is said once.
+
+        >>> form = Form(Kind.CURRENCY, '#,##0 "€"')
+        >>> [form.beside_units(units).number(4660.0) for units in ("", "EUR", "USD", "in thousands")]
+        ['4,660 €', '4,660', '4,660 €', '4,660 €']
+        """
+        same = self.kind is Kind.CURRENCY and _are_one_currency("".join(self.affixes), units)
+        return replace(self, bare=True) if same else self
 
     @property
     def factor(self) -> float:
@@ -120,7 +144,7 @@ class Form:
         """What is written before and after each number."""
         if self.kind in _IN_PERCENT:
             return "", " %"
-        if self.kind is not Kind.CURRENCY:
+        if self.kind is not Kind.CURRENCY or self.bare:
             return "", ""
         first = self.code.partition(";")[0]
         before, after = _affixes(first)

@@ -131,7 +131,8 @@ class ForecastResult:
     @cached_property
     def form(self) -> Form:
         """How its numbers are written."""
-        return Form(self.kind, self._code, self.definition.report_to, self._date1904)
+        form = Form(self.kind, self._code, self.definition.report_to, self._date1904)
+        return form.beside_units(self.definition.units)
 
     @cached_property
     def categories(self) -> dict[str, Estimate]:

@@ -117,7 +117,9 @@ def in_their_forms(workbook: Workbook, definitions: Definitions) -> Definitions:
 
     def forecast(each: Forecast) -> Forecast:
         form = known.get(host_of(each.cell), PLAIN)
-        return each if form is PLAIN or each.kind not in (None, form.kind) else replace(each, form=form)
+        if form is PLAIN or each.kind not in (None, form.kind):
+            return each
+        return replace(each, form=form.beside_units(each.units))
 
     return replace(
         definitions,

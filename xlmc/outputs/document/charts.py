@@ -137,9 +137,7 @@ def _of_means(limit: FilterLimit, indexes: list[int]) -> str:
     return f"Change of the {_MOST_MOVED} means that move most" if few else "Change of each mean"
 
 
-def _parts_of_range(
-    limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity], index: int
-) -> list[Estimate]:
+def _parts_of_range(limit: FilterLimit, forecasts: Mapping[str, ForecastSensitivity], index: int) -> list[Estimate]:
     """Return the changes of a forecast's mean as parts of its central range with the limit as it is."""
     now = next(point for point in limit.points if point.limit == limit.limit).answers[index]
     width = width_of_range(forecasts[now.forecast], now)

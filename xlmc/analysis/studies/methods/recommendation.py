@@ -82,6 +82,7 @@ def _paragraphs(study: Study) -> list[str]:
 
 def _accuracy_text(study: Study) -> str:
     text, _, relative = study.accuracy
+    text = f"{text[:-1].rstrip()} %" if text.endswith("%") else text
     what = f"{text} of its 5–95 % range" if relative else f"{text} in its units"
     numbers = "mean, standard deviation and both ends of the central range of every forecast"
     if any(study.reference.form(name).kind is Kind.YES_NO for name in study.varying):
@@ -177,6 +178,7 @@ def _command(study: Study, curve: Curve, wanted: Need) -> str:
         call = f"xlmc.analysis.studies.methods.{type(method).__name__}().run(model, {wanted.trials:.0f}, seed=1)"
         return f"It runs from Python: `{call}`."
     text, _, relative = study.accuracy
+    text = f"{text[:-1].rstrip()} %" if text.endswith("%") else text
     model = study.model
     asked = RunOptions(
         trials=_upwards(wanted.trials) if relative else None,

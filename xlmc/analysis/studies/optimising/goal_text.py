@@ -275,7 +275,7 @@ class _Parsing:
         forecast, is_text = model.forecasts[number], number in model.categories
         code = model.formats[forecast.name]
         two = forecast.name in model.two_valued
-        form = Form(Kind.YES_NO if two else kind_of_format(code) or Kind.NUMBER, code)
+        form = Form(Kind.YES_NO if two else kind_of_format(code) or Kind.NUMBER, code).beside_units(forecast.units)
         if found["share"] is not None:
             return self._share(factor, number, is_text, by_sign=found["link"].casefold() == "that")
         if is_text:

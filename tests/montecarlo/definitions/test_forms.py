@@ -267,3 +267,23 @@ def test_one_day_is_before_another(form, words):
 )  # fmt: skip
 def test_a_format_says_in_which_order_days_are_typed(code, order):
     assert Form(Kind.DATE, code).order == order
+
+
+@pytest.mark.parametrize(
+    ("code", "units", "text"),
+    [
+        ('#,##0 "€"', "EUR", "4,660"),
+        ('#,##0 "EUR"', "€", "4,660"),
+        ('"$"#,##0', "US$", "4,660"),
+        ('"$"#,##0', "USD", "4,660"),
+        ('"$"#,##0', "EUR", "$4,660"),
+        ('"$"#,##0', "", "$4,660"),
+        ('"$"#,##0', "a year", "$4,660"),
+        ('"$"#,##0"/h"', "USD", "$4,660/h"),
+        ("0%", "EUR", "466,000 %"),
+    ],
+)
+def test_a_currency_is_said_once_beside_units_that_name_it(code, units, text):
+    form = Form(kind_of_format(code), code).beside_units(units)
+    assert form.number(4660.0) == text
+    assert form.kind is kind_of_format(code)

@@ -131,8 +131,10 @@ class Form:
         >>> [form.beside_units(units).number(4660.0) for units in ("", "EUR", "USD", "in thousands")]
         ['4,660 €', '4,660', '4,660 €', '4,660 €']
         """
-        same = self.kind is Kind.CURRENCY and _are_one_currency("".join(self.affixes), units)
-        return replace(self, bare=True) if same else self
+        affixes = self.affixes
+        if self.kind is not Kind.CURRENCY or any(_money_in(each).strip() != each.strip() for each in affixes):
+            return self
+        return replace(self, bare=True) if _are_one_currency("".join(affixes), units) else self
 
     @property
     def factor(self) -> float:

@@ -74,5 +74,6 @@ def test_a_probability_has_no_range(found):
     rows = [row for row in table.rows if row[0] == "Large"]
     assert {(cell_text(row[4]), cell_text(row[5])) for row in rows} == {("–", "–")}
     [limit] = found.filter_limits
-    line = limit_chart_of_ranges(limit, {each.forecast: each for each in found.forecasts}).data.lines[0]
+    forecasts = {each.forecast: each for each in found.forecasts}
+    line = limit_chart_of_ranges(limit, forecasts, [*range(len(limit.slopes))]).data.lines[0]
     assert [point[1] for point in line.points] == [point.answers[0].change.value for point in limit.points]

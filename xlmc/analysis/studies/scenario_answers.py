@@ -22,10 +22,8 @@ from xlmc.errors import DefinitionError, SimulationError, XlmcError
 from xlmc.montecarlo.columns import numbers
 from xlmc.montecarlo.definitions.definitions import Forecast
 from xlmc.montecarlo.definitions.forms import PLAIN, Form
-from xlmc.montecarlo.definitions.scenarios import Scenario, Tabulated
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.distributions.spelling import name_key
-from xlmc.montecarlo.model.applied_changes import applied
 from xlmc.montecarlo.model.model import CompiledModel
 from xlmc.montecarlo.simulation.simulate import BLOCK, OnProgress, run_model
 from xlmc.montecarlo.simulation.simulation import RunResult
@@ -34,6 +32,7 @@ from xlmc.montecarlo.statistics.estimate import with_error
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison.paired_statistics import Accepted, Statistic
+    from xlmc.montecarlo.definitions.scenarios import Scenario
 
 __all__ = [
     "ForecastAnswer",
@@ -144,6 +143,8 @@ def scenario_answers(
     """
     if not run.settings.scenarios:
         return ()
+    from xlmc.montecarlo.definitions.scenarios import Tabulated  # few runs have scenarios
+
     if run not in _FOUND:
         _FOUND[run] = found = _answers(run, jobs, tell)
         run.take_tabulated(
@@ -192,6 +193,8 @@ def model_of(model: CompiledModel, scenario: Scenario | str) -> CompiledModel:
         SimulationError: there is no scenario of this name.
         DefinitionError, FormulaError: it is not possible.
     """
+    from xlmc.montecarlo.model.applied_changes import applied
+
     scenario = scenario_named(model, scenario)
     try:
         found = applied(model, scenario.changes)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Final
 
-from xlmc.analysis.results.statements.scenarios_in_words import changes_text
 from xlmc.analysis.studies.scenario_answers import impossible_scenarios, scenario_answers
 from xlmc.montecarlo.number_text import count_text, percent
 from xlmc.montecarlo.simulation.simulation import FEW
@@ -71,6 +70,8 @@ def _accepted(each: ScenarioAnswers) -> tuple[Content, ...]:
 def _changes(each: ScenarioAnswers) -> str:
     if each.scenario is None:
         return NONE
+    from xlmc.analysis.results.statements.scenarios_in_words import changes_text  # few runs have scenarios
+
     note = f" ({each.scenario.note})" if each.scenario.note else ""
     return f"{changes_text(each.scenario, each.run.model.definitions)}{note}"
 

@@ -30,7 +30,14 @@ EVERY: Final = 0.004
 """Seconds of processor time; systems that count by coarser clocks take longer."""
 
 PARTS: Final = {
-    "loading the workbook": ("montecarlo/model/loading.py load",),
+    "loading the workbook": (
+        "montecarlo/model/loading.py load",
+        "excel/workbook/reader.py read_workbook",
+        "montecarlo/definitions/definitions_reader.py read_definitions",
+        "montecarlo/model/model.py __init__",
+        "montecarlo/model/labels.py calculate_labels",
+    ),
+    "errors and answers at the base case": ("cli/check.py _show_base_case",),
     "the run": ("montecarlo/simulation/simulate.py run_model",),
     "sensitivities": ("analysis/studies/sensitivity/analysis.py sensitivities",),
     "draws before and after filters": ("outputs/filter_effect.py marginal", "outputs/filter_effect.py shapes"),

@@ -9,9 +9,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 from mpmath import mpf
 
-from xlmc.engine.graph.nodes import Apply, Input
+from xlmc.engine.graph.nodes import Apply, Constant, Input
 from xlmc.engine.passes.random_rounding import (
     RandomRounding,
+    _find_typed,
     closure,
     evaluate,
     evaluate_changes,
@@ -152,3 +153,27 @@ def test_constants_computed_from_large_arrays_count_as_typed(needed, most, close
     x = np.linspace(0.1, 5, 50)
     plain = numbers_of(evaluate(dag, closure(dag, [node]), {"x": x})[node], 50)
     assert numbers_of(evaluate(graph, nodes, {"x": x})[node], 50).tobytes() == plain.tobytes()
+
+
+@pytest.mark.parametrize(
+    ("formula", "typed"),
+    [
+        ("=A1*99", []),
+        ("=A1*-99", []),
+        ("=A1*100", [100.0]),
+        ("=A1*2.5", [2.5]),
+        ("=A1*99.5+3", [99.5]),
+        ("=A1*PI()", []),
+        ("=A1*3.14", [3.14]),
+        ("=A1/32.2-1000", [32.2, 1000.0]),
+        ("=A1^2.5", []),
+        ("=200.5^A1", [200.5]),
+        ("=RADIANS(A1)", []),
+        ("=IF(A1>200.5,1,2)", []),
+    ],
+)
+def test_typed_numbers_are_measurements_unless_they_count_or_are_exponents(needed, formula, typed):
+    dag, nodes, _ = needed(formula)
+    found = [dag.nodes[each] for each in _find_typed(dag, nodes)]
+    assert all(isinstance(node, Constant) for node in found)
+    assert sorted(float(node.value.numbers.flat[0]) for node in found) == sorted(typed)

@@ -46,6 +46,17 @@ def test_quantiles_are_right_to_the_last_digits(smoothed):
     np.testing.assert_allclose(smoothed.sf(smoothed.isf(u)), u, rtol=1e-9, atol=1e-14)
 
 
+def test_the_table_of_quantiles_holds_the_distribution_function_at_the_edges_of_every_cell(smoothed):
+    """At the far left, too, where it is some 1e-19, and up to the next edge by a polynomial."""
+    edges, (at_edge, series) = smoothed._edges, smoothed._table
+    normals = stats.norm(smoothed.values[:, None], smoothed.bandwidth)
+    np.testing.assert_allclose(at_edge, normals.cdf(edges).mean(axis=0), rtol=1e-9)
+    steps = np.diff(edges) / smoothed.bandwidth
+    near = steps < 1.5 * steps.min()  # the next cell begins where this one ends
+    ends = sum(part[:-1] * (steps / 2) ** power for power, part in enumerate(series))
+    np.testing.assert_allclose((at_edge[:-1] + ends)[near], at_edge[1:][near], rtol=1e-9, atol=1e-15)
+
+
 def test_moments(smoothed):
     normals = smoothed.values
     assert smoothed.mean() == pytest.approx(normals.mean(), rel=1e-12)

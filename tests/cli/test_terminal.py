@@ -253,3 +253,16 @@ def test_the_progress_bar_is_drawn_in_every_encoding(greek, on_a_screen, tmp_pat
     assert "trials," in outcome.err
     assert ("± ΔV" if encoding == "utf-8" else "+/- delta-V") in outcome.err
     assert (tmp_path / "r.xlsx").exists()
+
+
+@pytest.mark.parametrize("columns", range(20, 45))
+def test_no_line_ends_between_a_number_and_its_percent_sign(monkeypatch, columns):
+    text = "Of all trials 52.90 % lie below € 4,660 ± 12 and another 9 % above 5 € or so, in 1,587 trials (52.9 %)."
+    monkeypatch.setattr(terminal, "PIPE_WIDTH", columns)
+    monkeypatch.delenv("COLUMNS", raising=False)
+    lines = terminal.paragraph(text).split("\n")
+    assert " ".join(lines) == text
+    assert max(map(len, lines)) <= columns
+    assert not [line for line in lines if line.startswith(("%", "€ or")) or line.endswith(("±", "below €"))]
+    cells = list(table_lines(["Name", "Text"], [("x", text)], (), columns, "-"))
+    assert not [line for line in cells if line.strip().startswith("%")]

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Final
 
 import click
 
-from xlmc.cli.terminal import encodable, on_terminal, paragraph, put, say, width
+from xlmc.cli.terminal import encodable, on_terminal, paragraph, put, say, width, words
 from xlmc.errors import shortened
 from xlmc.excel.workbook.printable import printable
 
@@ -179,7 +179,7 @@ def _pieces(cell: str, right: bool) -> list[str]:
 
 
 def _words(text: str) -> list[str]:
-    return text.split() or [""]
+    return words(text) or [""]
 
 
 def _wrap(pieces: Sequence[str], width: int) -> list[str]:

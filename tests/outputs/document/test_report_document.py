@@ -326,3 +326,14 @@ def test_words_are_those_of_the_glossary():
         rest = re.sub(r"^(or quantile|SD|written ±): ", "", meaning)
         assert squeezed(CRASH.fill(rest)) in plain, word
         assert squeezed(word) in plain
+
+
+def test_rows_with_empty_cells_are_as_low_as_others(files):
+    """A cell is at least as high as the mark at its paragraph's end, so that mark is as small as the texts."""
+    tables = docx.Document(files[1]).tables
+    cells = [cell for table in tables for row in table.rows for cell in row.cells]
+    empty = [cell.paragraphs[0]._p for cell in cells if not cell.text and not cell._tc.xpath(".//w:drawing")]
+    sizes = {size for paragraph in empty for size in paragraph.xpath("w:pPr/w:rPr/w:sz/@w:val")}
+    assert len(empty) > 1
+    assert all(len(paragraph.xpath("w:pPr/w:rPr/w:sz")) == 1 for paragraph in empty)
+    assert max(map(int, sizes)) <= 17

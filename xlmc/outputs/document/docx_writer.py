@@ -38,7 +38,7 @@ _INK: Final = (0x1F, 0x30, 0x44)
 _LONGEST: Final = 255
 """Characters of a property of the file, the format's limit."""
 
-_BODY, _SMALL, _CELL = 10.5, 9.0, 8.5
+_BODY, _SMALL, _CELL, _BEHIND = 10.5, 9.0, 8.5, 4.0
 _BESIDE: Final = 50
 """Twentieths of a point beside the text of a cell."""
 
@@ -195,7 +195,9 @@ class _Writer:
                 cell.width = widths[index]
                 self._cell(cell.paragraphs[0], content, table.letters, bold=heads, right=index in at_right)
                 cell.paragraphs[0].paragraph_format.keep_with_next = leads or None  # no row stands alone on a page
-        self._file.add_paragraph().paragraph_format.space_after = _points(2)
+        behind = self._file.add_paragraph()
+        behind.paragraph_format.space_after = _points(2)
+        _shrink(behind, _BEHIND)
 
     def _cell(self, paragraph: Any, content: Content, size: float, *, bold: bool, right: bool) -> None:
         from docx.enum.text import WD_ALIGN_PARAGRAPH
@@ -208,11 +210,23 @@ class _Writer:
         else:
             run = paragraph.add_run(_said(cell_text(content)))
             run.font.size, run.bold = _points(size), bold or None
+            _shrink(paragraph, size)
 
 
 def _said(text: str) -> str:
     """Return a text to read, whose numbers stay with their units."""
     return printable(unbroken(text))
+
+
+def _shrink(paragraph: Any, size: float) -> None:
+    """Make the mark at the end of a paragraph as small as its text: an empty one is as high as its mark."""
+    from docx.oxml import OxmlElement
+    from docx.oxml.ns import qn
+
+    mark, points = OxmlElement("w:rPr"), OxmlElement("w:sz")
+    points.set(qn("w:val"), str(round(2.0 * size)))
+    mark.append(points)
+    paragraph._p.get_or_add_pPr().append(mark)
 
 
 def _points(size: float) -> Any:

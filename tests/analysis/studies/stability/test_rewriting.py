@@ -64,6 +64,32 @@ def test_a_speed_that_is_not_from_momentum_is_not_taken_for_it(case):
     assert not same(made, cell, without_cosine(made, cell, cosine))
 
 
+OWN, OTHER, BEFORE = TERMS[1], TERMS[0], TERMS[2]
+
+
+@pytest.mark.parametrize(
+    "formula",
+    [
+        "=({own}+{other}{before})/(m_2*COS(RADIANS(A7))*A9)",  # two masses below
+        "=({own}+{other}{before})/COS(RADIANS(A7))",  # none
+        "=A9*({own}+{other}{before})/(m_2*COS(RADIANS(A7)))",  # a factor before the sum
+        "=({own}+{other})/(m_2*COS(RADIANS(A7)))",  # two terms
+        "=({own}+{other}{before}+A9)/(m_2*COS(RADIANS(A7)))",  # four
+        "=({own}+{other}/A9{before})/(m_2*COS(RADIANS(A7)))",  # a quotient among them
+        "=({own}+{other}+m_1*V*COS(RADIANS(A5)))/(m_2*COS(RADIANS(A7)))",  # nothing is subtracted
+        "=({own}-{other}{before})/(m_2*COS(RADIANS(A7)))",  # two are
+        "=({other}+m_1*A9*COS(RADIANS(A8)){before})/(m_2*COS(RADIANS(A7)))",  # the mass below is in none
+        "=({own}+m_2*A9*COS(RADIANS(A6)){before})/(m_2*COS(RADIANS(A7)))",  # and in two
+        "=({own}+A9*v_1*COS(RADIANS(A6)){before})/(m_2*COS(RADIANS(A7)))",  # no mass of the other two
+        "=({own}*A9+{other}{before})/(m_2*COS(RADIANS(A7)))",  # two speeds
+    ],
+)
+def test_what_is_no_momentum_along_an_axis(case, formula):
+    made, cell = case(formula.format(own=OWN, other=OTHER, before=BEFORE))
+    cosine = next(part for part in factors(made.lowering.graph.formulas[cell])[1] if "COS" in str(part))
+    assert without_cosine(made, cell, cosine) is None
+
+
 @pytest.mark.parametrize("extra", ["", "+A9"])
 def test_a_change_of_spin(case, extra):
     turn = "m_1/A9*{}*(COS(RADIANS({}))*A3-SIN(RADIANS({}))*A4)"

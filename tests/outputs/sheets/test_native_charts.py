@@ -9,7 +9,7 @@ import pytest
 import xlsxwriter
 from openpyxl.utils import range_boundaries
 
-from xlmc.montecarlo.definitions.forms import Form
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.outputs.document.charts import limit_chart_of_ranges
 from xlmc.outputs.document.parts import Bar, Bars, Chart, Figure, Line, Lines
@@ -89,3 +89,17 @@ def test_a_change_of_an_answer_without_a_range_is_no_part_of_it(make):
     assert all(point[1] != point[1] for point in chart.data.lines[0].points)
     drawn, _ = written(chart.data)
     assert len(drawn.series) == 1
+
+
+@pytest.mark.parametrize(
+    ("form", "shown"),
+    [
+        (Form(Kind.DATE, "d-mmm-yy"), "d-mmm-yy"),
+        (Form(Kind.CURRENCY, '"$"#,##0'), '"$"#,##0.00;"−""$"#,##0.00'),
+        (PLAIN, 'General;"−"General'),
+    ],
+)
+def test_numbers_below_points_are_written_as_their_cells(form, shown):
+    cloud = Line("a", ((46102.0, 1.0), (46120.0, 2.0)))
+    chart, _ = written(Lines((), "y", form_across=form, cloud=cloud))
+    assert chart.x_axis.number_format.formatCode == shown

@@ -146,7 +146,7 @@ def _across_number(shown: Lines) -> str:
     """Return the format of the numbers of a horizontal axis, of dates the one of their cells."""
     if shown.form_across.kind is Kind.DATE:
         return shown.form_across.moment_code
-    return _axis_number(shown.form_across, shown.ends) if shown.lines else axis_format("General")
+    return _axis_number(shown.form_across, shown.ends) if shown.all else axis_format("General")
 
 
 def _limits_across(shown: Lines) -> dict[str, float]:

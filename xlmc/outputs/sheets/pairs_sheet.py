@@ -9,6 +9,8 @@ from typing import TYPE_CHECKING, Final
 import numpy as np
 
 from xlmc.analysis.results.statements.pairs import Pair, pairs_of
+from xlmc.montecarlo.definitions.forms import PLAIN, Form
+from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.number_text import count_text, counted_text
 from xlmc.outputs.document import cells
 from xlmc.outputs.document.cells import Shown
@@ -46,12 +48,15 @@ _PRINTED = 6
 
 @dataclass(frozen=True, slots=True)
 class _Points:
-    """A forecast's points: the name of an axis for them, where their name and their values stand, and these."""
+    """A forecast's points: the name of an axis for them, where their name and their values stand, these, and how they
+    are written.
+    """
 
     axis: str
     name: Reference
     at: Reference
     values: list[float]
+    form: Form
 
 
 def write_pairs(page: Page, book: Workbook, simulation: RunResult, curves: Curves, trials: TrialsAt) -> None:
@@ -109,17 +114,20 @@ def _points(
 ) -> _Points:
     """Return a forecast's values in these trials: those on the sheet Trials, or else a table of their own."""
     values = simulation.forecasts[forecast.name][known]
-    axis = with_units(forecast.name, forecast.units)
+    axis, form = with_units(forecast.name, forecast.units), simulation.results[forecast.name].form
+    if form.kind is Kind.YES_NO:
+        form = PLAIN  # a trial is 0 or 1, and no share
     if known[-1] < min(known.size, trials.shown):
         index = simulation.model.forecasts.index(forecast)
-        return _Points(axis, trials.heading(index), trials.column(index, known.size), values.tolist())
-    digits = cells.spread_format(float(values.max()) - float(values.min()))
+        return _Points(axis, trials.heading(index), trials.column(index, known.size), values.tolist(), form)
+    digits = cells.spread_format(float(values.max()) - float(values.min()), form)
     rows = [[Shown(value, digits)] for value in values.tolist()]
     table = curves.write(["Points of a scatter chart"], axis, [forecast.name], rows)
-    return _Points(axis, table.heading(0), table.column(0), values.tolist())
+    return _Points(axis, table.heading(0), table.column(0), values.tolist(), form)
 
 
 def _scatter(book: Workbook, title: str, first: _Points, second: _Points) -> ExcelChart:
     cloud = Line(title, tuple(zip(first.values, second.values, strict=True)))
-    chart = Chart(title, first.axis, Lines((), second.axis, cloud=cloud), title)
+    lines = Lines((), second.axis, form_across=first.form, form_upwards=second.form, cloud=cloud)
+    chart = Chart(title, first.axis, lines, title)
     return native_chart(book, chart, [SeriesAt(second.name, first.at, second.at)])

@@ -205,6 +205,9 @@ _RESERVED: Final = 1.5
 
 Array = NDArray[Any]
 
+_LARGE: Final = 1 << 22
+"""Bytes of an array from which on NumPy asks the system for large pages."""
+
 
 @dataclass(slots=True)
 class _Place:
@@ -312,7 +315,7 @@ class ColumnStore:
         """Move a column into an array for at least so many numbers, and for twice as many as it was made for."""
         array_now = self._arrays[key]
         size = max(least, 2 * array_now.size, self._expected_size(key))
-        if not array_now.size and self._folder is None:
+        if not array_now.size and self._folder is None and (self._stays or size * array_now.itemsize < _LARGE):
             self._grow_together(key, size)
             return
         array = np.empty(size, array_now.dtype)
@@ -322,8 +325,8 @@ class ColumnStore:
     def _grow_together(self, key: Hashable, size: int) -> None:
         """Make arrays for so many numbers, in one piece of memory: for a column, and for those that will be as long.
 
-        From 4 MB on NumPy asks the system for large pages; those at the ends of a piece are small ones, which take ten
-        times as long.
+        The pages at the ends of a piece are small ones, which take ten times as long. But where columns are written
+        before they are full, large pages between them would take memory for nothing.
         """
         expected = self._expected.get(key)
         alike = [other for other, rows in self._expected.items() if rows == expected and not self._arrays[other].size]
@@ -338,8 +341,13 @@ class ColumnStore:
 
         These are written after the block that fills the memory, which may be large.
         """
-        expected, reserved = self._expected.get(key, 0), _RESERVED * self._most
-        return expected if self._together <= reserved else int(expected * reserved / self._together)
+        expected = self._expected.get(key, 0)
+        return expected if self._stays else int(expected * _RESERVED * self._most / self._together)
+
+    @property
+    def _stays(self) -> bool:
+        """Whether all columns are expected to stay in memory."""
+        return self._together <= _RESERVED * self._most
 
     def _added(self, key: Hashable) -> Array:
         """Return the numbers of a column that are in memory, `(m,)`."""

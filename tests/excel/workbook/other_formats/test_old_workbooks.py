@@ -281,3 +281,8 @@ def test_how_excel_calculates_is_told(monkeypatch):
     notices = [each.message for each in read_workbook(data, "case.xls").notices]
     assert any("precision as displayed" in each for each in notices)
     assert any("Calculation is set to manual" in each for each in notices)
+
+
+def test_the_records_tell_logicals_from_numbers():
+    """An `.xls` says which result is TRUE and which is 1; an `.ods` that LibreOffice reads does not."""
+    assert read_old_workbook(plain_book({"S": b""})).tells_logicals

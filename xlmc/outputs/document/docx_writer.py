@@ -183,8 +183,8 @@ class _Writer:
         made.style = "Table Grid"
         made.autofit = False
         _narrow_cells(made)
-        whole, at_right = sum(table.relative_widths), table.at_right
-        widths = [Mm(self._room * width / whole) for width in table.relative_widths]
+        shares, at_right, letters = table.relative_widths, table.at_right, table.letters
+        widths = [Mm(self._room * share / sum(shares)) for share in shares]
         for column, width in zip(made.columns, widths, strict=True):
             column.width = width
         for number, (row, contents) in enumerate(zip(made.rows, lines, strict=True)):
@@ -193,7 +193,7 @@ class _Writer:
             leads = number in (0, bool(table.heads), len(lines) - 2) and number < len(lines) - 1
             for index, (cell, content) in enumerate(zip(row.cells, contents, strict=True)):
                 cell.width = widths[index]
-                self._cell(cell.paragraphs[0], content, table.letters, bold=heads, right=index in at_right)
+                self._cell(cell.paragraphs[0], content, letters, bold=heads, right=index in at_right)
                 cell.paragraphs[0].paragraph_format.keep_with_next = leads or None  # no row stands alone on a page
         behind = self._file.add_paragraph()
         behind.paragraph_format.space_after = _points(2)

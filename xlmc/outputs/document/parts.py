@@ -330,7 +330,8 @@ class Table:
     @property
     def lines(self) -> int:
         """About how many lines of text its rows take."""
-        room = [max(_LINE * share / sum(self.relative_widths) - _BESIDE, 1.0) for share in self.relative_widths]
+        widths = self.relative_widths
+        room = [max(_LINE * share / sum(widths) - _BESIDE, 1.0) for share in widths]
         return sum(max(map(_lines, row, room), default=1) for row in self.rows)
 
     @property

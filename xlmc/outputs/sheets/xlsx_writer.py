@@ -106,7 +106,8 @@ def sheet_widths(blocks: Iterable[Block]) -> list[float]:
         if isinstance(block, Table) and not _is_wrapped(block):
             lines, counts = _lines_of(block)
             widths += [_WIDTHS[-1]] * (sum(counts) - len(widths))
-            right = [index in block.at_right for index, count in enumerate(counts) for _ in range(count)]
+            at_right = block.at_right
+            right = [index in at_right for index, count in enumerate(counts) for _ in range(count)]
             for column, shown in enumerate(zip(*lines, strict=True)):
                 longest = max(len(shown_text(cell)) for cell in shown)
                 widths[column] = max(widths[column], min(longest, _LONG_NUMBER if right[column] else _LONG))

@@ -87,7 +87,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     parser.add_argument("old", help="a revision, or the path of a tree")
     parser.add_argument("--new", type=Path, default=ROOT, help="the tree of the new version; this one")
     parser.add_argument("--books", type=Path, nargs="+", default=[CASE_STUDY], help="workbooks; the case study")
-    parser.add_argument("--commands", nargs="+", choices=("check", "simulate"), default=["check", "simulate"])
+    parser.add_argument("--commands", nargs="+", choices=("check", "simulate", "verify"), default=["check", "simulate"])
     parser.add_argument("--pairs", type=int, default=PAIRS, help=f"runs of each command in each version; {PAIRS}")
     given = parser.parse_args(arguments)
     books = [book.resolve() for book in given.books]

@@ -52,6 +52,18 @@ def test_texts_of_the_tables_are_calculated_and_nothing_else(book):
     assert (after.data, after.sha256) == (before.data, before.sha256)
 
 
+@pytest.mark.parametrize(("table", "said"), [("xlmc_forecasts", None), ("xlmc_settings", "high")])
+def test_a_forecast_in_the_table_itself_is_not_calculated_to_read_it(tmp_path, table, said):
+    """It may need every formula of the workbook; in settings the column says what is meant."""
+    made = openpyxl.Workbook()
+    made.active.append(("Name", "Value"))
+    made.active.append(("speed", '=IF(1>0,"high","low")'))
+    made.active.add_table(Table(displayName=table, ref="A1:B2"))
+    made.save(tmp_path / "book.xlsx")
+    found = calculate_labels(read_workbook(tmp_path / "book.xlsx"))
+    assert found.content(Cell("Sheet", 2, 2)).value == said
+
+
 def test_a_book_without_anything_to_calculate_stays_itself(book):
     other = book("prices")
     assert calculate_labels(other) is other

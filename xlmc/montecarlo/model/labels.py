@@ -34,10 +34,11 @@ def calculate_labels(workbook: Workbook) -> Workbook:
     A notice names what differs from the saved value.
     """
     tables = [table for table in workbook.tables if table.name.casefold().startswith(_TABLES)]
-    missing = [cell for table in tables for cell in _body(table, _POINTS) if workbook.content(cell).is_uncalculated]
+    said = [cell for table in tables for cell in _said(table)]
+    missing = [cell for cell in said if workbook.content(cell).is_uncalculated]
     values = _calculated(workbook, missing) if missing else {}
     found = {cell: value for cell, value in values.items() if isinstance(value, str | bool)}
-    stale = _stale_values(workbook, tables) if workbook.may_be_stale else {}
+    stale = _stale_values(workbook, said) if workbook.may_be_stale else {}
     if not (missing or stale):
         return workbook
     written: dict[str, dict[tuple[int, int], CellContent]] = {}
@@ -48,19 +49,12 @@ def calculate_labels(workbook: Workbook) -> Workbook:
     return replace(workbook, sheets=with_cells(workbook.sheets, written), notices=(*workbook.notices, *notices))
 
 
-def _stale_values(workbook: Workbook, tables: Iterable[Table]) -> dict[Cell, CellValue]:
-    """Say what formulas of the tables give that is not what the file says, but for those that are forecasts
-    or filters.
-    """
-    cells: list[Cell] = []
-    for table in tables:
-        skipped = _POINTS if table.name.casefold().startswith(_OF_VALUES) else (*_POINTS, "value")
-        for cell in _body(table, skipped):
-            content = workbook.content(cell)
-            if content.formula is not None and content.value is not None:
-                cells.append(cell)
+def _stale_values(workbook: Workbook, said: Iterable[Cell]) -> dict[Cell, CellValue]:
+    """Say what formulas of the tables give that is not what the file says."""
+    contents = {cell: workbook.content(cell) for cell in said}
+    cells = [cell for cell, each in contents.items() if each.formula is not None and each.value is not None]
     found = _calculated(workbook, cells) if cells else {}
-    return {cell: value for cell, value in found.items() if _differs(workbook.content(cell).value, value)}
+    return {cell: value for cell, value in found.items() if _differs(contents[cell].value, value)}
 
 
 def _differs(saved: CellValue, found: CellValue) -> bool:
@@ -93,8 +87,12 @@ def _calculated(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, CellV
     return {cell: value for cell, value in known.items() if not isinstance(value, ErrorCode)}
 
 
-def _body(table: Table, skipped: Collection[str]) -> Iterator[Cell]:
-    """Return the cells of a table but for those of some columns."""
+def _said(table: Table) -> Iterator[Cell]:
+    """Return the cells of a table that hold what is said: not those that say which cell is meant, or are meant.
+
+    A forecast that stands in the table itself may need every formula of the workbook.
+    """
+    skipped = _POINTS if table.name.casefold().startswith(_OF_VALUES) else (*_POINTS, "value")
     area = table.body
     for column, heading in enumerate(table.columns, area.left):
         if heading.strip().casefold() not in skipped:

@@ -370,7 +370,8 @@ def span_text(span: float, error: float | None = None, *, exact: bool = False, d
     >>> span_text(0.084), span_text(12.31, 0.042), span_text(250.0, exact=True), span_text(2.5, exact=True, days=False)
     ('2.0 h', '12.310 ± 0.042 days', '250 days', '60 h')
     """
-    _, factor, unit = next(each for each in _UNITS[not days :] if abs(span) >= each[0])
+    size = max(abs(span), error or 0.0)
+    _, factor, unit = next(each for each in _UNITS[not days :] if size >= each[0])
     if error:
         return f"{format_estimate(span * factor, error * factor)} {unit}"
     if exact:

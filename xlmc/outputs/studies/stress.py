@@ -7,6 +7,8 @@ from collections.abc import Iterator
 from functools import partial
 from typing import TYPE_CHECKING, Final
 
+from xlmc.montecarlo.definitions.stating import Kind
+
 if TYPE_CHECKING:
     from xlmc.analysis.studies.stress import Moved, Part, Scenario, Stressed, Tail
     from xlmc.montecarlo.definitions.definitions import Forecast
@@ -62,6 +64,8 @@ def _sentences(found: Stressed) -> Iterator[str]:
 
 def _strongest(found: Stressed, forecast: Forecast, tail: Tail) -> str:
     """Say which tail moves the mean of a forecast most."""
+    from xlmc.outputs.summary import share_text
+
     part, form = tail.parts[forecast.name], found.forms[forecast.name]
     change, is_share = part.changes["mean"], "low" not in part.numbers
     if change.error is not None and abs(change.value) < 3.0 * change.error:
@@ -70,10 +74,11 @@ def _strongest(found: Stressed, forecast: Forecast, tail: Tail) -> str:
     what = share if form.factor != 1.0 and is_share else "mean"
     units = f" {forecast.units}" if forecast.units and not is_share else ""
     side = "highest" if tail.is_high else "lowest"
+    written = share_text if is_share else form.estimate
     return (
         f"{forecast.name} moves most with {tail.assumption}: with its {side} {_percent(found.share)} the {what} is "
-        f"{form.estimate(part.numbers['mean'])}{units}, instead of "
-        f"{form.estimate(found.base[forecast.name].numbers['mean'])}{units}."
+        f"{written(part.numbers['mean'])}{units}, instead of "
+        f"{written(found.base[forecast.name].numbers['mean'])}{units}."
     )
 
 
@@ -98,19 +103,25 @@ def _limits(found: Stressed, scenario: Scenario) -> str:
 
     form, trials = found.forms[scenario.forecast], f"{count_text(scenario.trials)} trials"
     mean = found.base[scenario.forecast].numbers["mean"]
+
+    def limit(value: float) -> str:
+        return form.number(value) if form.kind is Kind.WHOLE else form.beside(value, mean)
+
     if "p" not in scenario.words.casefold():
         return f" ({trials})"
     if math.isinf(scenario.high):
-        return f" ({form.beside(scenario.low, mean)} or more, {trials})"
+        return f" ({limit(scenario.low)} or more, {trials})"
     if math.isinf(scenario.low):
-        return f" ({form.beside(scenario.high, mean)} or less, {trials})"
-    return f" ({form.beside(scenario.low, mean)} to {form.beside(scenario.high, mean)}, {trials})"
+        return f" ({limit(scenario.high)} or less, {trials})"
+    return f" ({limit(scenario.low)} to {limit(scenario.high)}, {trials})"
 
 
 def _shift(found: Estimate) -> str:
+    from xlmc.montecarlo.number_text import number_text
     from xlmc.montecarlo.statistics import format_estimate
 
-    return f"{'+' if found.value > 0 else ''}{format_estimate(found.value, found.error)}"
+    text = format_estimate(found.value, found.error) if found.error else number_text(found.value, 3)
+    return f"{'+' if found.value > 0 else ''}{text}"
 
 
 def _blocks(found: Stressed) -> Iterator[Block]:

@@ -123,3 +123,11 @@ def test_a_table_with_the_headings_of_a_reserved_one(make_book, name, headings, 
     table = likely_table(make_book({**cells, "S!A2": "x"}, [(name, "S!A1:C2")]), "xlmc_assumptions")
     assert (table is not None) == likely
     assert likely_table(make_book(cells, [(name, "S!A1:C1")]), "xlmc_scenarios") is None
+
+
+def test_headings_of_a_plain_range_are_texts_as_excel_shows_them(make_book):
+    """A number is no `7.0`: a column of a matrix may be headed by one, as the assumption is called."""
+    cells = {"A1": "Name", "B1": 7.0, "C1": 0.25, "D1": True, "E1": " Cell ", "A2": "x"}
+    book = make_book({f"xlmc_filters!{at}": each for at, each in cells.items()}, sheets=["xlmc_filters"])
+    (table,) = definition_tables(book, Findings())["xlmc_filters"]
+    assert table.table.columns == ("Name", "7", "0.25", "TRUE", "Cell")

@@ -6,13 +6,14 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from difflib import SequenceMatcher
 
+from xlmc.errors import ErrorCode
 from xlmc.excel.address import Area, Cell, parse_address
 from xlmc.excel.workbook.printable import label
-from xlmc.excel.workbook.workbook import Table, Workbook
+from xlmc.excel.workbook.workbook import CellValue, Table, Workbook
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.distributions.spelling import nearest, plain
 
-__all__ = ["CASE", "CONVERTED", "KINDS", "NEAR_MISS", "DefinitionTable", "definition_tables", "likely_table"]
+__all__ = ["CASE", "CONVERTED", "KINDS", "NEAR_MISS", "DefinitionTable", "as_text", "definition_tables", "likely_table"]
 
 CONVERTED = "xlmc_converted"
 """What the name of the table starts with that `xlmc convert` writes: a workbook that has it has its definitions in
@@ -90,11 +91,26 @@ def definition_tables(workbook: Workbook, findings: Findings) -> dict[str, list[
         area = None if found[kind] or kind == CONVERTED else _plain_range(workbook, kind)
         if area is not None:
             headings = [workbook.content(Cell(area.sheet, area.top, at)).value for at in _columns(area)]
-            table = Table(kind, area, tuple("" if each is None else str(each) for each in headings))
+            table = Table(kind, area, tuple(map(as_text, headings)))
             message = f"The range {area} is read as the table {kind}: it has its name, and is no table of Excel"
             findings.notice(message, Cell(area.sheet, area.top, area.left))
             found[kind].append(_with_headings(kind, table, findings))
     return found
+
+
+def as_text(value: CellValue) -> str:
+    """Write a value as Excel shows it in a cell of general format."""
+    match value:
+        case None:
+            return ""
+        case bool():
+            return "TRUE" if value else "FALSE"
+        case ErrorCode():
+            return value.text
+        case str():
+            return label(value.strip())
+        case _:
+            return format(value, ".15g")
 
 
 def likely_table(workbook: Workbook, kind: str) -> Table | None:

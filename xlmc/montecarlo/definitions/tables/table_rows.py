@@ -12,12 +12,11 @@ from typing import Final, NoReturn, Protocol
 
 from xlmc.errors import DefinitionError, ErrorCode
 from xlmc.excel.address import Cell
-from xlmc.excel.workbook.printable import label
-from xlmc.excel.workbook.workbook import CellContent, CellValue, Workbook
+from xlmc.excel.workbook.workbook import CellContent, Workbook
 from xlmc.montecarlo.definitions.definitions import Parameter
 from xlmc.montecarlo.definitions.problems import Findings
 from xlmc.montecarlo.definitions.stating import Named, named
-from xlmc.montecarlo.definitions.tables.reserved_tables import NEAR_MISS, DefinitionTable
+from xlmc.montecarlo.definitions.tables.reserved_tables import NEAR_MISS, DefinitionTable, as_text
 from xlmc.montecarlo.distributions.spelling import name_key, nearest, plain
 from xlmc.montecarlo.number_text import count_text, number_text
 
@@ -100,21 +99,6 @@ class Row:
             for spelling, (written, _) in self.table.columns.items()
             if spelling not in spellings and self.filled(written)
         }
-
-
-def as_text(value: CellValue) -> str:
-    """Write a value as Excel shows it in a cell of general format."""
-    match value:
-        case None:
-            return ""
-        case bool():
-            return "TRUE" if value else "FALSE"
-        case ErrorCode():
-            return value.text
-        case str():
-            return label(value.strip())
-        case _:
-            return format(value, ".15g")
 
 
 def rows_of(

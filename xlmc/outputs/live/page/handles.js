@@ -268,14 +268,19 @@ class NumberBox {
   update(value, step, { off = false, why = "", form = this.form } = {}) {
     Object.assign(this, { value, step, form });
     if (document.activeElement !== this.input || this.input.value === this.shown) {
-      this.shown = this.input.dataset.shown = why || stepText(value, step, form);
-      this.input.value = this.shown;
+      this.show(why || stepText(value, step, form));
       this.refuse("");
     }
     this.input.disabled = off;
     this.input.title = why ? `Computed: ${why}; type a number to replace it` : this.hint;
     this.input.classList.toggle("computed", Boolean(why));
     this.input.classList.toggle("dated", Boolean(form?.moment));
+  }
+
+  /** Put a text into the box, which has room for all of it: $500,000 must not be the begin of $500,000,000. */
+  show(text) {
+    this.shown = this.input.dataset.shown = this.input.value = text;
+    this.input.style.minWidth = text.length > 7 ? `min(${text.length + 2}ch, 15rem)` : "";
   }
 
   /** Say why what was typed is not taken; nothing where it is. */
@@ -289,7 +294,7 @@ class NumberBox {
     const text = this.input.value;
     if (this.goes && !text.trim()) {
       this.refuse("");
-      this.shown = this.input.dataset.shown = this.input.value = "";
+      this.show("");
       this.set(NONE, false);
       return;
     }
@@ -319,7 +324,7 @@ class NumberBox {
   take(value) {
     this.value = value;
     this.refuse("");
-    this.shown = this.input.dataset.shown = this.input.value = stepText(value, this.step, this.form);
+    this.show(stepText(value, this.step, this.form));
     this.refuse(this.set(value, false) ?? "");
   }
 }

@@ -248,3 +248,8 @@ def test_a_number_that_happens_to_be_0_in_all_trials_is_no_answer_by_yes_or_no(m
     cells = {"A1": 0.5, "B1": formula, "C1": 0.0}
     run = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0)], [make.forecast("x", "B1")], trials=50)
     assert run["x"].kind is expected
+
+
+def test_one_trial_is_no_plural(make):
+    run = make.simulate({"A1": 0.5, "B1": "=A1"}, [make.uniform("a", "A1", 0, 1)], [make.forecast("x", "B1")], trials=1)
+    assert "1 combination of values from these ranges was tried. " in "".join(each.text for each in question(run))

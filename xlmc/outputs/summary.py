@@ -340,7 +340,8 @@ def question(simulation: RunResult) -> Iterator[Phrase]:
     yield Phrase(
         f"The workbook computes {_count_text(len(model.forecasts), 'answer (forecast)', 'answers (forecasts)')} from "
         f"{_count_text(len(model.live), 'quantity', 'quantities')} known only within ranges (assumptions). "
-        f"{count_text(simulation.evaluated)} combinations of values from these ranges were tried. "
+        f"{_count_text(simulation.evaluated, 'combination', 'combinations')} of values from these ranges "
+        f"{'was' if simulation.evaluated == 1 else 'were'} tried. "
     )
     asked = _asked(simulation)
     if not asked:
@@ -398,7 +399,7 @@ def _of_some(simulation: RunResult) -> Iterator[Phrase]:
 
 
 def _count_text(count: int, one: str, several: str) -> str:
-    return f"{count} {one if count == 1 else several}"
+    return f"{count_text(count)} {one if count == 1 else several}"
 
 
 def shares_of(answer: SummaryRow | ForecastResult) -> Mapping[str, Estimate]:

@@ -64,7 +64,8 @@ def assumption_remarks(simulation: RunResult) -> Iterator[str]:
     """Yield the sentences that say which trials the numbers are from."""
     early = told_of_prior(simulation)
     which = "Before filtering: t" if simulation.filters_act else "T"
-    yield f"{which}he first {count_text(early)} trials. ± is the standard error."
+    first = "trial" if early == 1 else f"{count_text(early)} trials"
+    yield f"{which}he first {first}. ± is the standard error."
     if simulation.plan.size:
         yield _STRATIFIED
     if simulation.kept_inputs < simulation.accepted:

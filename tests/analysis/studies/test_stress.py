@@ -228,3 +228,14 @@ def test_of_many_inputs_and_answers_those_that_matter_are_told():
     assert len(found.scenarios[0].inputs) == 20
     assert "Shown are the first 20 forecasts; 5 more can be named" in str(found)
     assert [each.name for each in xlmc.stress(model, trials=2_000, forecasts=["y24"]).forecasts] == ["y24"]
+
+
+def test_counts_and_shares_are_told_as_such():
+    model = xlmc.model(
+        lambda n, a: {"count": n * 1.0, "rare": 1.0 * (n > 6) * (a > -9)},
+        {"n": xlmc.Poisson(3), "a": xlmc.Normal(0, 1)},
+        {"count": {"kind": "whole number"}, "rare": {"kind": "yes/no"}},
+    )
+    told = str(xlmc.stress(model, trials=4_000, seed=1))
+    assert "rare moves most with n: with its highest 10 % the probability is" in told
+    assert "count above P90 (5 or more, " in told

@@ -170,7 +170,7 @@ def _restricted(found: Stressed, tail: Tail) -> str:
 
     row = next(each for each in found.run.model.assumptions if each.name == tail.assumption)
     form = found.run.model.input_forms.get(tail.assumption)
-    limit = number_text(tail.limit, 4) if form is None else form.number(tail.limit)
+    limit = number_text(tail.limit, 4) if form is None else form.beside_units(row.units).number(tail.limit)
     return f"{'from' if tail.is_high else 'up to'} {limit}{f' {row.units}' if row.units else ''}"
 
 

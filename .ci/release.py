@@ -75,9 +75,9 @@ def check() -> None:
     Raises:
         SystemExit: it is not; the message says why.
     """
-    found = list(faults())
-    if found:
-        raise SystemExit("not ready for a release:\n" + "\n".join(f"  {fault}" for fault in found))
+    result = list(faults())
+    if result:
+        raise SystemExit("not ready for a release:\n" + "\n".join(f"  {fault}" for fault in result))
     print("ready for a release")
 
 

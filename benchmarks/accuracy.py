@@ -74,13 +74,13 @@ def _draws(entry: Entry) -> bool:
 
 def _curve(answer: Answer, ladder: Sequence[int]) -> dict[str, Any]:
     runs = [answer.samples[str(trials)] for trials in ladder]
-    seconds = [statistics.median(seconds for seconds, _ in found) for found in runs]
-    found = [errors(np.array([answers for _, answers in run])) for run in runs]
+    seconds = [statistics.median(seconds for seconds, _ in results) for results in runs]
+    result = [errors(np.array([answers for _, answers in run])) for run in runs]
     return {
         "trials": list(ladder),
         "seeds": len(runs[0]),
         "seconds": seconds,
-        "errors": [row.tolist() for row in found],
+        "errors": [row.tolist() for row in result],
         "by rate": False,
     }
 

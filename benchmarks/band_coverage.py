@@ -93,10 +93,10 @@ def measure(problem: Problem, runs: int = RUNS, outer: int = OUTER, inner: int =
     model, held = problem.model(), dict[str, int]()
     for run in range(runs):
         truth = problem.truth(np.random.default_rng([1, run]))
-        found = xlmc.uncertainty(
+        result = xlmc.uncertainty(
             model, outer=outer, inner=inner, confidence=CONFIDENCE, uncertain=problem.uncertain, seed=run
         )
-        bands = {band.number: band for band in found["y"].bands}
+        bands = {band.number: band for band in result["y"].bands}
         for number, value in truth.items():
             held[number] = held.get(number, 0) + (bands[number].low.value <= value <= bands[number].high.value)
     return {number: count / runs for number, count in held.items()}
@@ -122,9 +122,9 @@ def main() -> int:
         print(name, *(f"{number} {share:.1%}" for number, share in shares.items()), sep="; ")
     if runs == RUNS:
         RESULTS.write_text(json.dumps(records, indent=2) + "\n", encoding="utf-8")
-    found = faults(records)
-    print(*found, sep="\n")
-    return bool(found)
+    result = faults(records)
+    print(*result, sep="\n")
+    return bool(result)
 
 
 if __name__ == "__main__":

@@ -42,7 +42,7 @@ TYPE = re.compile(rb"""\s+t\s*=\s*(?:"[^"]*"|'[^']*')""")
 def without_values(parts):
     """Return the package without the values that are saved with formulas."""
     bare = {
-        name: VALUE.sub(lambda found: TYPE.sub(b"", found["cell"]) + found["formula"], xml)
+        name: VALUE.sub(lambda result: TYPE.sub(b"", result["cell"]) + result["formula"], xml)
         for name, xml in parts.items()
         if b"sheetData" in xml[:100_000] and name.endswith(".xml")
     }
@@ -55,12 +55,12 @@ def look_at(path, copies, counts):
     checked = verify(book)
     matched = {check.cell for check in checked.of(Status.MATCHED)}
     differing = {check.cell for check in checked.of(Status.DIFFERING)}
-    found = Calculator(book).calculate()
-    same = copy_with_values(book, {}, found.values, found.unknown)
-    changed = [cell for cell in (*found.values, *found.unknown) if cell in matched]
+    result = Calculator(book).calculate()
+    same = copy_with_values(book, {}, result.values, result.unknown)
+    changed = [cell for cell in (*result.values, *result.unknown) if cell in matched]
     parts = read_workbook(same, path.name).parts
     others = {name for name in parts if parts[name] != book.parts.get(name)} - {
-        book.sheets[cell.sheet].part for cell in (*differing, *found.values)
+        book.sheets[cell.sheet].part for cell in (*differing, *result.values)
     }
     bare = read_workbook(package_bytes(without_values(book.parts)), path.name)
     again = Calculator(bare).calculate()

@@ -117,9 +117,9 @@ def _measure(chosen: argparse.Namespace, books: Sequence[str], plan: Plan, outpu
         paths = make_books(folder, [book for book in BOOKS if book in books])
         described = machine.describe(hand_c.compiler())
         for part in chosen.parts:
-            found = _PARTS[part](_Measured(entries, paths, plan, output, folder, chosen.series, chosen.most))
-            _write(output / f"{part}.json", described, found)
-            _say(f"--- {part}, {perf_counter() - start:.0f} s so far\n{tables.TABLES[part](found)}")
+            result = _PARTS[part](_Measured(entries, paths, plan, output, folder, chosen.series, chosen.most))
+            _write(output / f"{part}.json", described, result)
+            _say(f"--- {part}, {perf_counter() - start:.0f} s so far\n{tables.TABLES[part](result)}")
 
 
 @dataclass(frozen=True)
@@ -185,9 +185,9 @@ def _with_one_variant(entry: Entry) -> Entry:
     return Entry(**{**vars(entry), "variants": {book: given[:1] for book, given in entry.variants.items()}})
 
 
-def _write(path: Path, described: dict[str, Any], found: dict[str, Any]) -> None:
+def _write(path: Path, described: dict[str, Any], result: dict[str, Any]) -> None:
     path.write_text(
-        json.dumps({"machine": described, "found": found}, indent=1, ensure_ascii=False) + "\n", encoding="utf-8"
+        json.dumps({"machine": described, "found": result}, indent=1, ensure_ascii=False) + "\n", encoding="utf-8"
     )
 
 

@@ -69,10 +69,10 @@ class Conformance:
 
     def shapes(self) -> dict[tuple[str, str], list[Checked]]:
         """Book and shape -> its cells."""
-        found: dict[tuple[str, str], list[Checked]] = defaultdict(list)
+        result: dict[tuple[str, str], list[Checked]] = defaultdict(list)
         for cell in self.cells():
-            found[cell.book, cell.shape].append(cell)
-        return found
+            result[cell.book, cell.shape].append(cell)
+        return result
 
     def cell_share(self, status: Status = Status.MATCHED) -> float:
         """Share of the cells that have that status."""
@@ -107,13 +107,13 @@ def _matches(cells: list[Checked]) -> bool:
 def check_folder(folder: Path) -> Conformance:
     """Recompute every workbook of a folder."""
     sizes = _listed_sizes(folder)
-    found = Conformance()
+    result = Conformance()
     for path in sorted(path for path in folder.rglob("*") if path.suffix.lower() in ENDINGS):
         if _is_damaged(path):
-            found.damaged.append(path.name)
+            result.damaged.append(path.name)
         else:
-            found.books[path.name] = list(check_book(path, sizes))
-    return found
+            result.books[path.name] = list(check_book(path, sizes))
+    return result
 
 
 def _is_damaged(path: Path) -> bool:
@@ -173,21 +173,23 @@ def _formulas_written(path: Path) -> int:
         return 1
 
 
-def lines_of(found: Conformance) -> Iterator[str]:
+def lines_of(conformance: Conformance) -> Iterator[str]:
     """What is printed."""
-    cells, shapes = found.cells(), found.shapes()
+    cells, shapes = conformance.cells(), conformance.shapes()
     yield _line("cells", [cell.status for cell in cells])
     yield _line("shapes", [_worst(shape) for shape in shapes.values()])
-    yield from _apart(found)
-    yield from (f"damaged, not counted: {name}" for name in found.damaged)
+    yield from _apart(conformance)
+    yield from (f"damaged, not counted: {name}" for name in conformance.damaged)
     yield from _by_reason(shapes)
     yield from _differing(cells)
 
 
-def _apart(found: Conformance) -> Iterator[str]:
+def _apart(conformance: Conformance) -> Iterator[str]:
     """The shares of formulas that only call functions on the list."""
-    listed = found.of_listed_functions()
-    cells, shapes = (len(a) - len(b) for a, b in ((found.cells(), listed.cells()), (found.shapes(), listed.shapes())))
+    listed = conformance.of_listed_functions()
+    cells, shapes = (
+        len(a) - len(b) for a, b in ((conformance.cells(), listed.cells()), (conformance.shapes(), listed.shapes()))
+    )
     if shapes:
         counts = f"{cells:,} cell{'s' * (cells != 1)} ({shapes:,} shape{'s' * (shapes != 1)})"
         yield (
@@ -241,9 +243,9 @@ def main(given: Sequence[str] | None = None) -> int:
     folder = parser.parse_args(given).folder
     if not folder.is_dir():
         parser.error(f"{folder} is no folder")
-    found = check_folder(folder)
-    print("\n".join(lines_of(found)))
-    return int(found.cell_share(Status.DIFFERING) > 0)
+    result = check_folder(folder)
+    print("\n".join(lines_of(result)))
+    return int(result.cell_share(Status.DIFFERING) > 0)
 
 
 if __name__ == "__main__":

@@ -73,7 +73,7 @@ def measured(path: Path, seconds: float, rounds: int) -> Rates:
         for engine in ENGINES if number % 2 else reversed(ENGINES):
             spent[engine].append(_spent(model, engine, trials))
     ratios = tuple(by_numpy / by_jit for by_numpy, by_jit in zip(*spent.values(), strict=True))
-    return Rates(*(1e9 * statistics.median(found) / trials for found in spent.values()), ratios)
+    return Rates(*(1e9 * statistics.median(result) / trials for result in spent.values()), ratios)
 
 
 def _spent(model: Any, engine: str, trials: int) -> float:

@@ -162,7 +162,7 @@ _CALLS = frozenset(
 )
 
 
-def killed(writers: Writers, kind: str, at: random.Random, found: Found) -> None:
+def killed(writers: Writers, kind: str, at: random.Random, result: Found) -> None:
     """Kill a process that writes files of this kind one after the other; then look, and write once more."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -176,11 +176,11 @@ def killed(writers: Writers, kind: str, at: random.Random, found: Found) -> None
             os.kill(child, signal.SIGKILL)
         os.waitpid(child, 0)
         strays = [left.name for left in folder.iterdir() if left != path]
-        found.ends["something stray until the next run" if strays else "nothing stray"] += 1
+        result.ends["something stray until the next run" if strays else "nothing stray"] += 1
         if kind != COLUMNS and path.read_bytes() not in writers.contents(kind):
-            found.broken.append(f"{kind}: broken by a kill")
+            result.broken.append(f"{kind}: broken by a kill")
         _write_once(writers, kind, path)
-        _check_strays(kind, path, found, "after a kill and the next run")
+        _check_strays(kind, path, result, "after a kill and the next run")
 
 
 def _call(at: random.Random) -> int:
@@ -206,8 +206,8 @@ def _write_once(writers: Writers, kind: str, path: Path) -> None:
         writers.write(kind, 1, path)
 
 
-def _check_strays(kind: str, path: Path, found: Found, when: str) -> None:
-    found.broken.extend(f"{kind}: {left.name} left {when}" for left in path.parent.iterdir() if left != path)
+def _check_strays(kind: str, path: Path, result: Found, when: str) -> None:
+    result.broken.extend(f"{kind}: {left.name} left {when}" for left in path.parent.iterdir() if left != path)
 
 
 @contextmanager
@@ -224,7 +224,7 @@ def small_disk(size: int) -> Iterator[Path | None]:
             subprocess.run(["umount", folder], check=True)
 
 
-def full_disk(writers: Writers, kind: str, at: random.Random, found: Found, disk: Path | None) -> None:
+def full_disk(writers: Writers, kind: str, at: random.Random, result: Found, disk: Path | None) -> None:
     """Write where there is room for a part only; the old file is whole afterwards, and the person was told."""
     size = 1 << 20 if kind == COLUMNS else max(map(len, writers.contents(kind)))
     room = at.randint(0, size + size // 3)
@@ -238,7 +238,7 @@ def full_disk(writers: Writers, kind: str, at: random.Random, found: Found, disk
         code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         if filler is not None:
             filler.unlink()
-        _check_full(writers, kind, path, code, found)
+        _check_full(writers, kind, path, code, result)
 
 
 def _write_limited(writers: Writers, kind: str, path: Path, limit: int | None) -> None:
@@ -258,13 +258,13 @@ def _fill(disk: Path, room: int) -> Path:
     return filler
 
 
-def _check_full(writers: Writers, kind: str, path: Path, code: int, found: Found) -> None:
-    found.ends[{TOLD: "told that it is full", 0: "there was room"}.get(code, f"exit code {code}")] += 1
+def _check_full(writers: Writers, kind: str, path: Path, code: int, result: Found) -> None:
+    result.ends[{TOLD: "told that it is full", 0: "there was room"}.get(code, f"exit code {code}")] += 1
     if code not in (0, TOLD):
-        found.broken.append(f"{kind}: exit code {code} on a full disk")
+        result.broken.append(f"{kind}: exit code {code} on a full disk")
     if kind != COLUMNS and path.read_bytes() != writers.contents(kind)[0 if code else 1]:
-        found.broken.append(f"{kind}: broken on a full disk")
-    _check_strays(kind, path, found, "on a full disk")
+        result.broken.append(f"{kind}: broken on a full disk")
+    _check_strays(kind, path, result, "on a full disk")
 
 
 def campaign(writers: Writers, kills: int, disks: int, seed: int) -> tuple[Found, Found]:
@@ -287,9 +287,9 @@ def main() -> None:
     asked = parser.parse_args()
     writers = Writers(20_000)
     results = campaign(writers, asked.kills, asked.disks, asked.seed)
-    for what, found in zip(("kills", "full disks"), results, strict=True):
-        print(f"{what}: {sum(found.ends.values())}; {dict(found.ends)}; broken: {found.broken or 'none'}")
-    sys.exit(1 if any(found.broken for found in results) else 0)
+    for what, result in zip(("kills", "full disks"), results, strict=True):
+        print(f"{what}: {sum(result.ends.values())}; {dict(result.ends)}; broken: {result.broken or 'none'}")
+    sys.exit(1 if any(answer.broken for answer in results) else 0)
 
 
 if __name__ == "__main__":

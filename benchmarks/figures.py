@@ -88,16 +88,16 @@ def _slope(axis: Any, curves: dict[str, Any], k: int) -> None:
 def draw_rates(results: Path, target: Path) -> None:
     """Trials per second of every contestant over those of xlmc/numpy, one panel a book where that was measured."""
     books = json.loads(results.read_text(encoding="utf-8"))["found"]
-    found: dict[str, Any] = {book: records for book, records in books.items() if _shown(records)}
-    if not found:
+    result: dict[str, Any] = {book: records for book, records in books.items() if _shown(records)}
+    if not result:
         return
     plot = _pyplot()
-    heights = [max(len(_shown(records)), 2) for records in found.values()]
+    heights = [max(len(_shown(records)), 2) for records in result.values()]
     figure, axes = plot.subplots(
-        len(found), 1, figsize=(10, 1.2 + 0.34 * sum(heights) + 0.8 * len(found)), layout="constrained", sharex=True,
+        len(result), 1, figsize=(10, 1.2 + 0.34 * sum(heights) + 0.8 * len(result)), layout="constrained", sharex=True,
         gridspec_kw={"height_ratios": heights}, squeeze=False,
     )  # fmt: skip
-    for axis, (book, records) in zip(axes[:, 0], found.items(), strict=True):
+    for axis, (book, records) in zip(axes[:, 0], result.items(), strict=True):
         _bars(axis, records)
         axis.set_title(TITLES.get(book, book), loc="left", fontsize=11)
     axes[-1, 0].set_xlabel("trials per second, as a multiple of xlmc/numpy's in the same round")
@@ -127,13 +127,13 @@ _LINES = (
 
 def draw_growth(results: Path, target: Path) -> None:
     """Seconds over size, log–log, one panel a series, the slope of the last decade beside each line."""
-    found = json.loads(results.read_text(encoding="utf-8"))["found"]
+    result = json.loads(results.read_text(encoding="utf-8"))["found"]
     plot = _pyplot()
     figure, axes = plot.subplots(2, 2, figsize=(11.5, 9.4), layout="constrained")
     for axis, (name, title) in zip(axes.flat, GROWTH.items(), strict=True):
         for column, engines, label, own, line in _LINES:
             for engine in engines:
-                sizes, seconds = seconds_of(found.get(name, {}).get(engine, []), column)
+                sizes, seconds = seconds_of(result.get(name, {}).get(engine, []), column)
                 if not sizes:
                     continue
                 colour, marker = STYLES[f"xlmc/{engine}"]

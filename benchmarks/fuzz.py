@@ -49,7 +49,7 @@ def main() -> None:
         summaries = list(pool.map(lambda kind: _campaign(kind, given, 60 * minutes), kinds))
     for summary in summaries:
         _show(summary, given.seed)
-    sys.exit(any(summary.found for summary in summaries))
+    sys.exit(any(summary.faults for summary in summaries))
 
 
 def _campaign(kind: str, given: argparse.Namespace, seconds: float) -> Summary:
@@ -64,14 +64,14 @@ def _campaign(kind: str, given: argparse.Namespace, seconds: float) -> Summary:
             _keep(given.keep / f"{kind}-{given.seed}-{given.only}-{made.name}", made.data)
     seen: set[str] = set()
 
-    def found(outcome: Outcome) -> None:
+    def result(outcome: Outcome) -> None:
         if outcome.finding is not None and outcome.finding.key not in seen:
             seen.add(outcome.finding.key)
             print(f"{kind} {given.seed}/{outcome.number}: {outcome.finding.key}", flush=True)
             if given.keep:
                 _keep(given.keep / f"{kind}-{given.seed}-{outcome.number}-{outcome.name}", outcome.data)
 
-    summary = campaign(kind, KINDS[kind], given.seed, numbers, until, found)
+    summary = campaign(kind, KINDS[kind], given.seed, numbers, until, result)
     print(summary.line(), flush=True)
     return summary
 
@@ -82,9 +82,9 @@ def _keep(path: Path, data: bytes) -> None:
 
 
 def _show(summary: Summary, seed: int) -> None:
-    for key, found in sorted(summary.found.items(), key=lambda each: -each[1].count):
-        first = found.first
-        print(f"\n{summary.kind}: {key}, {found.count:,} times")
+    for key, result in sorted(summary.faults.items(), key=lambda each: -each[1].count):
+        first = result.first
+        print(f"\n{summary.kind}: {key}, {result.count:,} times")
         print(f"    --kind {summary.kind} --seed {seed} --only {first.number}")
         print(f"    {first.said[:400]}")
         if first.finding is not None:

@@ -65,18 +65,18 @@ def measure(
         say: prints.
         most: leaves out larger sizes.
     """
-    found = dict(known)
+    result = dict(known)
     for name in series:
         sizes = [size for size in SIZES[name] if most is None or size <= most]
-        found[name] = {engine: [] for engine in ENGINES}
+        result[name] = {engine: [] for engine in ENGINES}
         for engine in ENGINES:
             points = (
                 _runs(engine, sizes, limit) if name == "trials" else _books(name, engine, sizes, folder, seconds, limit)
             )
             for point in points:
-                found[name][engine].append(point)
+                result[name][engine].append(point)
                 say(f"{name}, {engine}: {point}")
-    return {name: found[name] for name in SERIES if name in found}
+    return {name: result[name] for name in SERIES if name in result}
 
 
 def _books(name: str, engine: str, sizes: Sequence[int], folder: Path, seconds: float, limit: float) -> Any:

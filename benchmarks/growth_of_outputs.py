@@ -128,21 +128,21 @@ def measure(
         limit: seconds that one process may take.
         steps: that are wanted; books are loaded and run in any case.
     """
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
     middle: dict[str, Any] | None = None
     for axis, sizes in axes.items():
-        found[axis] = []
+        result[axis] = []
         for size in sizes:
             about = {**MIDDLE, axis: size}
             if about == MIDDLE and middle is not None:
-                found[axis].append({**middle, "size": size})
+                result[axis].append({**middle, "size": size})
                 continue
             point = measure_point(about, folder, limit, steps)
-            found[axis].append({"size": size, **point})
+            result[axis].append({"size": size, **point})
             if size == MIDDLE[axis]:
-                middle = found[axis][-1]
+                middle = result[axis][-1]
             print(f"{axis} {size:,}: {_line(point)}", flush=True)
-    return found
+    return result
 
 
 def measure_point(about: dict[str, int], folder: Path, limit: float, steps: Sequence[str]) -> dict[str, Any]:
@@ -196,9 +196,9 @@ def _line(point: dict[str, Any]) -> str:
     return ", ".join(f"{step} {point[step]['seconds']:.2f}" for step in STEPS if step in point)
 
 
-def table(found: dict[str, Any]) -> str:
+def table(result: dict[str, Any]) -> str:
     """Every axis as a table of Markdown: seconds of each step, the slope of its last decade, and the largest memory."""
-    return "\n\n".join(_table_of(axis, points) for axis, points in found.items())
+    return "\n\n".join(_table_of(axis, points) for axis, points in result.items())
 
 
 def _table_of(axis: str, points: Sequence[dict[str, Any]]) -> str:
@@ -221,7 +221,7 @@ def _curve(points: Sequence[dict[str, Any]], step: str) -> tuple[list[int], list
     return [point["size"] for point in have], [max(point[step]["seconds"], 1e-3) for point in have]
 
 
-def draw(found: dict[str, Any], target: Path) -> None:
+def draw(result: dict[str, Any], target: Path) -> None:
     """Processor time over size, log–log, one panel an axis."""
     import matplotlib as mpl
 
@@ -229,14 +229,14 @@ def draw(found: dict[str, Any], target: Path) -> None:
     from matplotlib import pyplot as plot
 
     figure, axes = plot.subplots(2, 3, figsize=(15, 9), layout="constrained")
-    for panel, (axis, points) in zip(axes.flat, found.items(), strict=False):
+    for panel, (axis, points) in zip(axes.flat, result.items(), strict=False):
         for step, colour in zip(STEPS, _COLOURS, strict=True):
             sizes, seconds = _curve(points, step)
             panel.plot(sizes, seconds, "o-", color=colour, ms=4, lw=1.4, label=step)
         named = "trials for one accepted" if axis == "rejected" else axis
         panel.set(xscale="log", yscale="log", xlabel=named, ylabel="seconds of the processor")
         panel.grid(which="major", color="#D5DBE3", lw=0.7)
-    for panel in axes.flat[len(found) :]:
+    for panel in axes.flat[len(result) :]:
         panel.set_axis_off()
     handles, labels = axes.flat[0].get_legend_handles_labels()
     axes.flat[-1].legend(handles, labels, frameon=False, loc="center", ncols=2)
@@ -272,20 +272,20 @@ def main(arguments: Sequence[str] | None = None) -> None:
     about = machine.describe()
     folder = Path(tempfile.mkdtemp(prefix="growth-"))
     try:
-        found = {**known, **measure(axes, folder, chosen.limit, steps=chosen.steps)}
+        result = {**known, **measure(axes, folder, chosen.limit, steps=chosen.steps)}
     finally:
         shutil.rmtree(folder)
-    found = {axis: found[axis] for axis in AXES if axis in found}
-    text = json.dumps({"machine": about, "middle": MIDDLE, "found": found}, indent=1)
+    result = {axis: result[axis] for axis in AXES if axis in result}
+    text = json.dumps({"machine": about, "middle": MIDDLE, "found": result}, indent=1)
     results.write_text(text + "\n", encoding="utf-8")
-    draw(found, chosen.output / "growth-of-outputs.png")
+    draw(result, chosen.output / "growth-of-outputs.png")
     if chosen.docs:
         text = _DOCS.read_text(encoding="utf-8")
         before, _, rest = text.partition(f"<!-- {_MARK} -->")
         after = rest.partition(f"<!-- /{_MARK} -->")[2]
-        made = f"<!-- {_MARK} -->\n\n{table(found)}\n\n{machine.sentence(about)}\n\n<!-- /{_MARK} -->"
+        made = f"<!-- {_MARK} -->\n\n{table(result)}\n\n{machine.sentence(about)}\n\n<!-- /{_MARK} -->"
         _DOCS.write_text(f"{before}{made}{after}", encoding="utf-8")
-    print(table(found))
+    print(table(result))
 
 
 if __name__ == "__main__":

@@ -36,7 +36,7 @@ WIDE = "-mprefer-vector-width=512"
 def compiler() -> str | None:
     """The C compiler, or None."""
     names = (os.environ["CC"],) if os.environ.get("CC") else ("gcc", "clang", "cc")
-    return next((found for name in names if (found := shutil.which(name))), None)
+    return next((result for name in names if (result := shutil.which(name))), None)
 
 
 def build(folder: Path) -> Path:
@@ -100,8 +100,8 @@ class Hand:
         """Inputs (k, n) -> forecasts of the accepted trials, (f, m)."""
         n = inputs.shape[1]
         out = np.empty((self._forecasts, n))
-        found = self._evaluate(np.ascontiguousarray(inputs), n, out)
-        return out[:, :found]
+        result = self._evaluate(np.ascontiguousarray(inputs), n, out)
+        return out[:, :result]
 
     def simulate(self, trials: int, seed: int, chunk: int) -> Array:
         """Forecasts of the accepted trials, (f, m). `chunk` is a multiple of 8.
@@ -111,10 +111,10 @@ class Hand:
         """
         capacity = min(trials, int(self._share * trials) + 10_000)
         out = np.empty((self._forecasts, capacity))
-        found = self._simulate(trials, seed, chunk, self._low, self._high, out, capacity)
-        if found < 0 or (found == capacity and capacity < trials):
+        result = self._simulate(trials, seed, chunk, self._low, self._high, out, capacity)
+        if result < 0 or (result == capacity and capacity < trials):
             raise MemoryError("no room for the accepted trials")
-        return out[:, :found]
+        return out[:, :result]
 
 
 class March:

@@ -96,14 +96,14 @@ def case_kernel(sincos: Any) -> Any:
             total = math.sqrt(along * along + across * across) * MPH
             work[0, j], work[1, j], work[2, j], work[3, j] = total / m1, total / m2, v1i * MPH, v2i * MPH
             work[4, j], work[5, j] = e_n, e_t
-        found = 0
+        result = 0
         for j in range(n):
             e_n, e_t = work[4, j], work[5, j]
             if (e_n >= 0) & (e_n < 1) & (e_t >= 0) & (e_t <= 0.25) & (work[3, j] > 0):
                 for k in range(4):
-                    out[k, kept + found] = work[k, j]
-                found += 1
-        return found
+                    out[k, kept + result] = work[k, j]
+                result += 1
+        return result
 
     return kernel
 
@@ -143,6 +143,6 @@ def simulate(kernel: Any, forecasts: int, low: Array, high: Array, trials: int, 
     for start in range(0, trials, chunk):
         rng.random(out=inputs)
         _stretch(inputs, low, high)
-        found = kernel(inputs, min(chunk, trials - start), work, out, 0)
-        parts.append(out[:, :found].copy())
+        result = kernel(inputs, min(chunk, trials - start), work, out, 0)
+        parts.append(out[:, :result].copy())
     return np.concatenate(parts, axis=1)

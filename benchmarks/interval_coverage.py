@@ -96,12 +96,12 @@ def faults(cells: Sequence[Cell], runs: int) -> list[str]:
     ]
 
 
-def table(found: Mapping[str, Any]) -> str:
+def table(result: Mapping[str, Any]) -> str:
     """Coverage in percent, as Markdown."""
     lines = ["| problem | sampling | trials | least accepted | " + " | ".join(STATISTICS) + " |"]
     lines += ["|---|---|---:|---:|" + "---:|" * len(STATISTICS)]
-    for cell in (Cell(*each) for each in found["cells"]):
-        shares = " | ".join(f"{100 * hits / found['runs']:.1f}" for hits in cell.hits)
+    for cell in (Cell(*each) for each in result["cells"]):
+        shares = " | ".join(f"{100 * hits / result['runs']:.1f}" for hits in cell.hits)
         least = f"{cell.accepted:,}" + ("" if cell.per_replicate is None else f" ({cell.per_replicate:,})")
         lines.append(f"| {cell.problem} | {METHODS[cell.method].name} | {cell.trials:,} | {least} | {shares} |")
     return "\n".join(lines)
@@ -119,9 +119,9 @@ def main() -> None:
         for method in METHODS:
             cells.append(measure(name, method, given.runs))
             print(*cells[-1], flush=True)
-    found = {"runs": given.runs, "statistics": STATISTICS, "cells": cells}
-    given.results.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    given.page.write_text(placed(given.page.read_text(encoding="utf-8"), "coverage", table(found)), encoding="utf-8")
+    result = {"runs": given.runs, "statistics": STATISTICS, "cells": cells}
+    given.results.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    given.page.write_text(placed(given.page.read_text(encoding="utf-8"), "coverage", table(result)), encoding="utf-8")
     missed = faults(cells, given.runs)
     print("\n".join(missed) or "every cell meets the bar")
     sys.exit(1 if missed else 0)

@@ -57,12 +57,12 @@ WAYS: Final = {"jit": engine, "C": in_c}
 def least(run: Callable[[], object]) -> float:
     """Return the nanoseconds a trial takes."""
     run()
-    found = []
+    result = []
     for _ in range(RUNS):
         start = time.process_time()
         run()
-        found.append(time.process_time() - start)
-    return min(found) / TRIALS * 1e9
+        result.append(time.process_time() - start)
+    return min(result) / TRIALS * 1e9
 
 
 def parts(book: str, folder: Path) -> str:
@@ -82,9 +82,9 @@ def parts(book: str, folder: Path) -> str:
     def timed(self: NativeLoop, addresses: Any, n: int) -> int:
         nonlocal native
         start = time.thread_time()
-        found = call(self, addresses, n)
+        result = call(self, addresses, n)
         native += time.thread_time() - start
-        return found
+        return result
 
     run, whole = engine(book, folder), []
     with patch("xlmc.engine.llvm.block_runner.filler", filler), patch.object(NativeLoop, "__call__", timed):

@@ -66,7 +66,7 @@ async def measure(folder: Path, moves: int) -> None:
     opened = OpenBook(book, Library(Keeper(folder / "state"), book=book), offer=lambda page: "")
     opened.start()
     window = opened.join()
-    await _next(window, lambda said: said["kind"] == "rest")
+    await _next(window, lambda message: message["kind"] == "rest")
     firsts, wholes, computed = [], [], []
     for move in range(moves):
         tab = TABS[move % len(TABS)]
@@ -86,14 +86,14 @@ async def measure(folder: Path, moves: int) -> None:
     saves = [await _saved(window, other if turn % 2 else book, book, folder) for turn in range(SAVES)]
     await opened.close()
     print(f"{UNIFORMS} uniforms, {FORECASTS} forecasts, {moves} moves, tabs in turn: {', '.join(TABS)}")
-    for said, seconds in (
+    for messages, seconds in (
         ("first answer", firsts),
         ("computed for it, by all threads", computed),
         ("answer of 50,000 trials", wholes),
         ("save to first answer", saves),
     ):
         high = sorted(seconds)[int(0.95 * (len(seconds) - 1))]
-        print(f"{said}: median {1e3 * statistics.median(seconds):.0f} ms, 95th percentile {1e3 * high:.0f} ms")
+        print(f"{messages}: median {1e3 * statistics.median(seconds):.0f} ms, 95th percentile {1e3 * high:.0f} ms")
     print(f"load of the machine: {os.getloadavg()[0]:.1f} on {os.cpu_count()} processors")
 
 
@@ -104,26 +104,26 @@ async def _saved(window: Window, source: Path, book: Path, folder: Path) -> floa
     await _drain(window, WAIT)
     began = time.perf_counter()
     os.replace(waiting, book)
-    await _next(window, lambda said: said["kind"] == "news")
-    await _next(window, lambda said: said["kind"] == "frame")
+    await _next(window, lambda message: message["kind"] == "news")
+    await _next(window, lambda messages: messages["kind"] == "frame")
     return time.perf_counter() - began
 
 
-def _say(opened: OpenBook, window: Window, said: Message) -> None:
-    message: PageMessage = read_message(written(said))
+def _say(opened: OpenBook, window: Window, messages: Message) -> None:
+    message: PageMessage = read_message(written(messages))
     opened.hear(window, message)
 
 
-def _answers(said: Message, seq: int, trials: int = 0) -> bool:
+def _answers(message: Message, seq: int, trials: int = 0) -> bool:
     """Whether it is the answer to a change, from so many trials at least."""
-    return said["kind"] == "frame" and said["seq"] == seq and said["trials"] >= trials
+    return message["kind"] == "frame" and message["seq"] == seq and message["trials"] >= trials
 
 
 async def _next(window: Window, fits: Callable[[Message], bool]) -> Message:
     while True:
-        said: Message = json.loads(await window.next())
-        if fits(said):
-            return said
+        message: Message = json.loads(await window.next())
+        if fits(message):
+            return message
 
 
 async def _drain(window: Window, seconds: float) -> None:

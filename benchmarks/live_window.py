@@ -91,11 +91,11 @@ def _measure(browser: webdriver.Chrome, book: Path, moves: int, server: int) -> 
         answered = f"Live.latencies.length + Live.firsts.length > {before}"
         _until(browser, f"{answered} || Live.moves.size === 0", LONGEST)
     spent = _processor_seconds(server) - began
-    found, firsts = browser.execute_script("return [Live.latencies, Live.firsts]")
+    result, firsts = browser.execute_script("return [Live.latencies, Live.firsts]")
     charts = browser.execute_script("return Live.right.seen.size")
     _mouse(browser, "mouseReleased", x, y)
     print(f"{book.stem}: {moves} moves, {charts} charts in sight")
-    _say("from 50,000 trials or more", found)
+    _say("from 50,000 trials or more", result)
     _say("from fewer, first", firsts)
     print(f"processor time of the server: {1e3 * spent / moves:.0f} ms a move")
     time.sleep(1.0)

@@ -87,8 +87,8 @@ def make_book(path: Path, case: Case, lookups: int, rows: int) -> None:
             model.write_formula(line, 0, f"=INDEX(Table!$A$1:$A${rows},1+{moved})", None, 0)
         else:
             model.write(line, 0, key)
-        found = expected(case, key, rows) if not case.drawn else 0
-        model.write_formula(line, 1, "=" + FORMS[case.form].format(key=f"A{line + 1}", **places), None, found)
+        result = expected(case, key, rows) if not case.drawn else 0
+        model.write_formula(line, 1, "=" + FORMS[case.form].format(key=f"A{line + 1}", **places), None, result)
     model.write_formula(0, 1, f"=SUM(B2:B{lookups + 1})", None, 0)
     model.add_table(0, 4, 1, 7, _table("xlmc_assumptions", "Name", "Cell", "Low", "High"))
     model.write_row(1, 4, ["shift"])
@@ -120,9 +120,9 @@ def measure(path: str, *, drawn: bool) -> float:
     if drawn:
         run_model(load(path), RunOptions.of(trials=TRIALS))
         return process_time() - start
-    found = verify(read_workbook(Path(path)))
+    result = verify(read_workbook(Path(path)))
     used = process_time() - start
-    lookups = [each for each in found.cells if each.cell.column == 2 and each.cell.row > 1]
+    lookups = [each for each in result.cells if each.cell.column == 2 and each.cell.row > 1]
     if not lookups or (wrong := [each for each in lookups if each.status is not Status.MATCHED]):
         raise ArithmeticError(f"{len(wrong)} of {len(lookups)} lookups differ: {wrong[:1]}")
     return used

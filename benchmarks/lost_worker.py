@@ -43,11 +43,11 @@ def worker(address: str) -> Iterator[subprocess.Popen[bytes]]:
 
 def fingerprint(run: xlmc.Simulation) -> str:
     """Return the SHA-256 of every number that the run kept."""
-    found = hashlib.sha256()
+    result = hashlib.sha256()
     frame = run.frame()
     for name in frame.columns:
-        found.update(np.ascontiguousarray(frame[name].to_numpy()).tobytes())
-    return found.hexdigest()
+        result.update(np.ascontiguousarray(frame[name].to_numpy()).tobytes())
+    return result.hexdigest()
 
 
 def timed(what: str, ask: Callable[[], xlmc.Simulation]) -> str:

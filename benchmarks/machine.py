@@ -81,13 +81,13 @@ def _ticks(path: Path) -> tuple[int, int]:
 
 
 def _versions() -> dict[str, str]:
-    found = {}
+    result = {}
     for package in PACKAGES:
         try:
-            found[package] = version(package)
+            result[package] = version(package)
         except PackageNotFoundError:
             continue
-    return found
+    return result
 
 
 def _first_line(command: list[str]) -> str:

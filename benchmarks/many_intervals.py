@@ -95,12 +95,12 @@ def _trial_skewness(m: _Shape, pull: pulls.Pull) -> Floats:
 
 def _interval(m: _Shape, value: Floats, size: Floats, pull: pulls.Pull, error: Floats, units: Floats) -> Numbers:
     of_trials = _trial_skewness(m, pull)
-    told = (m.kurtosis > pulls.PEAKED_BESIDE_ROOT * np.sqrt(m.n)) & (
+    messages = (m.kurtosis > pulls.PEAKED_BESIDE_ROOT * np.sqrt(m.n)) & (
         np.abs(of_trials) * np.sqrt(m.n) > [pulls.reach(float(n)) for n in m.n]
     )
     if m.totals is None:
         low, high = _t_range(units - 1.0, of_trials)
-        return Numbers(value, value - size * high * error, value - size * low * error, told)
+        return Numbers(value, value - size * high * error, value - size * low * error, messages)
     each = pull[0] * m.totals[0] + pull[1] * m.totals[1]
     low, high = _t_range(units - 1.0, (each**3).sum(axis=1) / (each**2).sum(axis=1) ** 1.5)
     hidden = units * (1.0 - 0.025 ** (1.0 / units)) * m.steps[0 if pull[0] else 1] / m.n * size
@@ -113,7 +113,7 @@ def _interval(m: _Shape, value: Floats, size: Floats, pull: pulls.Pull, error: F
     few = np.abs(of_trials) > np.minimum(pulls.SKEWED_BESIDE_ROOT, pulls.SKEWED / np.sqrt(m.n))
     least = np.where(few, np.minimum(ends[0], value - high * plain), ends[0])
     most = np.where(few, np.maximum(ends[1], value - low * plain), ends[1])
-    return Numbers(value, least, most, told | few)
+    return Numbers(value, least, most, messages | few)
 
 
 def _t_range(dof: Floats, skewness: Floats) -> tuple[Floats, Floats]:
@@ -134,17 +134,17 @@ def share(hits: Bools, kept: Bools, replicates: int) -> Numbers:
     p = ((hits & kept).sum(axis=1) / n).clip(0.0, 1.0)
     if not replicates:
         return Numbers(p, *_wilson(p, n), nothing)
-    found, totals = _each(hits & kept, replicates), _each(kept, replicates)
+    result, totals = _each(hits & kept, replicates), _each(kept, replicates)
     widening = stdtrit(_groups(totals) - 1.0, 0.975) / Z
     inside = (p > 0.0) & (p < 1.0)
-    error = _error_of_share(found, totals, n)
+    error = _error_of_share(result, totals, n)
     equal = np.where(inside, p * (1.0 - p) / (error * widening) ** 2, n)
     low, high = _wilson(p, equal)
-    k, size = found.min(axis=1), np.maximum(totals[:, 0], 1)
-    even = inside & (totals == totals[:, :1]).all(axis=1) & (found.max(axis=1) <= k + 1)
-    more = np.where(even[:, None], found - k[:, None], 0).mean(axis=1)
+    k, size = result.min(axis=1), np.maximum(totals[:, 0], 1)
+    even = inside & (totals == totals[:, :1]).all(axis=1) & (result.max(axis=1) <= k + 1)
+    more = np.where(even[:, None], result - k[:, None], 0).mean(axis=1)
     least, most = _wilson(more, np.full(len(p), float(replicates)))
-    least = np.where(found.max(axis=1) == k, -most, least)
+    least = np.where(result.max(axis=1) == k, -most, least)
     low = np.where(even, np.minimum(low, ((k + least) / size).clip(0.0)), low)
     high = np.where(even, np.maximum(high, ((k + most) / size).clip(max=1.0)), high)
     return Numbers(p, low, high, nothing)
@@ -167,8 +167,8 @@ def _groups(kept: NDArray[np.int64]) -> Floats:
     return np.asarray((kept > 0).sum(axis=1).astype(float))
 
 
-def _error_of_share(found: NDArray[np.int64] | Floats, totals: NDArray[np.int64], n: Floats) -> Floats:
-    apart = (found - (found.sum(axis=1) / n)[:, None] * totals) / n[:, None]
+def _error_of_share(result: NDArray[np.int64] | Floats, totals: NDArray[np.int64], n: Floats) -> Floats:
+    apart = (result - (result.sum(axis=1) / n)[:, None] * totals) / n[:, None]
     groups = _groups(totals)
     error = np.sqrt((apart**2).sum(axis=1) * groups / (groups - 1.0))
     return np.maximum(error, Z / (2.0 * (n + Z * Z)))
@@ -195,8 +195,8 @@ def percentile(x: Floats, ascending: Floats, kept: Bools, p: float, replicates: 
     n, nothing = kept.sum(axis=1).astype(float), np.zeros(len(x), bool)
     equal = n
     if replicates:
-        found, totals = _below(x, ascending, kept, p, replicates), _each(kept, replicates)
-        error = _error_of_share(found, totals, n)
+        result, totals = _below(x, ascending, kept, p, replicates), _each(kept, replicates)
+        error = _error_of_share(result, totals, n)
         widening = stdtrit(_groups(totals) - 1.0, 0.975) / Z
         equal = p * (1.0 - p) / error**2 / widening**2
     last = np.maximum(equal - 1.0, 1.0)

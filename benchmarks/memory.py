@@ -31,11 +31,11 @@ def measure(
     Shorter runs are repeated until they are as many trials as the longest, so that what else the machine does slows all
     alike. The ratios are of the longest to the shortest, that of costs the median of those in the same round.
     """
-    found = [[_measured(count, max(trials) // count, engine, jobs) for count in trials] for _ in range(rounds)]
-    costs = [round_[-1]["seconds"] / round_[0]["seconds"] * trials[0] / trials[-1] for round_ in found]
+    result = [[_measured(count, max(trials) // count, engine, jobs) for count in trials] for _ in range(rounds)]
+    costs = [round_[-1]["seconds"] / round_[0]["seconds"] * trials[0] / trials[-1] for round_ in result]
     runs = [
         runs_of[0] | {key: statistics.median(run[key] for run in runs_of) for key in ("seconds", "before", "peak")}
-        for runs_of in zip(*found, strict=True)
+        for runs_of in zip(*result, strict=True)
     ]
     memory = runs[-1]["peak"] / runs[0]["peak"]
     return {
@@ -54,8 +54,8 @@ def _measured(trials: int, times: int, engine: str, jobs: int) -> dict[str, Any]
     paths = os.pathsep.join(filter(None, (str(HERE.parent), os.environ.get("PYTHONPATH"))))
     environment = {**os.environ, "PYTHONPATH": paths}
     done = subprocess.run([*command, str(trials)], check=True, capture_output=True, text=True, env=environment)
-    found: dict[str, Any] = json.loads(done.stdout)
-    return found
+    result: dict[str, Any] = json.loads(done.stdout)
+    return result
 
 
 def one(trials: int, times: int, engine: str, jobs: int) -> dict[str, Any]:
@@ -90,14 +90,14 @@ def main() -> None:
     if chosen.only:
         print(json.dumps(one(chosen.only, chosen.times, chosen.engine, chosen.jobs)))
         return
-    found = measure(chosen.trials, chosen.engine, chosen.jobs)
+    result = measure(chosen.trials, chosen.engine, chosen.jobs)
     print(f"{'trials':>13}{'accepted':>12}{'seconds':>10}{'ns a trial':>12}{'peak memory, MB':>17}{'loaded, MB':>12}")
-    for run in found["runs"]:
+    for run in result["runs"]:
         cost, peak, before = 1e9 * run["seconds"] / run["trials"], run["peak"] / 1e6, run["before"] / 1e6
         print(
             f"{run['trials']:>13,}{run['accepted']:>12,}{run['seconds']:>10.2f}{cost:>12.1f}{peak:>17.0f}{before:>12.0f}"
         )
-    print(f"cost of a trial, longest over shortest run: {found['cost']:.3f}; peak memory: {found['memory']:.2f}")
+    print(f"cost of a trial, longest over shortest run: {result['cost']:.3f}; peak memory: {result['memory']:.2f}")
 
 
 if __name__ == "__main__":

@@ -59,8 +59,8 @@ def advice(book: str, seed: int) -> Record:
             "never": [],
             "cannot tell": [],
         }
-    found = study(model, seed=seed, reference_trials=REFERENCE, trials=TRIALS, replicates=REPLICATES)
-    best = choice(found)
+    result = study(model, seed=seed, reference_trials=REFERENCE, trials=TRIALS, replicates=REPLICATES)
+    best = choice(result)
     needs = {curve.method.key: each for curve, each in best.needs.items()}
     return {
         "recommended": best.chosen and best.chosen.method.key,
@@ -85,8 +85,8 @@ def measure(books: Iterable[str], seeds: int) -> None:
 
 
 def _known() -> dict[str, dict[str, Record]]:
-    found: dict[str, dict[str, Record]] = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
-    return found
+    result: dict[str, dict[str, Record]] = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
+    return result
 
 
 def _write(records: dict[str, dict[str, Record]]) -> None:
@@ -98,17 +98,17 @@ def _write(records: dict[str, dict[str, Record]]) -> None:
 
 def faults(records: dict[str, dict[str, Record]]) -> list[str]:
     """Where the advice changes with the seed, or denies that a method converges which does."""
-    found = []
+    result = []
     for book, seeds in records.items():
-        said = {each["recommended"] for each in seeds.values()}
-        if len(said) != 1 or None in said:
-            found.append(f"{book}: recommends {sorted(map(str, said))}")
+        message = {each["recommended"] for each in seeds.values()}
+        if len(message) != 1 or None in message:
+            result.append(f"{book}: recommends {sorted(map(str, message))}")
         if not _always_cheapest(seeds):
-            found.append(f"{book}: no method is among the cheapest with every seed")
+            result.append(f"{book}: no method is among the cheapest with every seed")
         denied = {key for each in seeds.values() for key in each["never"]} & {"mc", "lhs", "sobol", "grid"}
         if denied:
-            found.append(f"{book}: says that {sorted(denied)} never come to it")
-    return found
+            result.append(f"{book}: says that {sorted(denied)} never come to it")
+    return result
 
 
 def _always_cheapest(seeds: dict[str, Record]) -> set[str]:
@@ -117,13 +117,13 @@ def _always_cheapest(seeds: dict[str, Record]) -> set[str]:
 
 def other_today(records: dict[str, dict[str, Record]]) -> list[str]:
     """Where the rule of `need.choice` would now recommend something else for the recorded seconds."""
-    found = []
+    result = []
     for book, seeds in records.items():
         for seed, each in seeds.items():
             costs = {key: s + ENGINE_READY * (key.startswith("mc/")) for key, s in each["seconds"].items()}
             if costs and (now := chosen_of(costs, "mc" if "mc" in costs else min(costs))) != each["recommended"]:
-                found.append(f"{book}, seed {seed}: {now} instead of {each['recommended']}")
-    return found
+                result.append(f"{book}, seed {seed}: {now} instead of {each['recommended']}")
+    return result
 
 
 def table(records: dict[str, dict[str, Record]]) -> str:
@@ -133,10 +133,12 @@ def table(records: dict[str, dict[str, Record]]) -> str:
         "| --- | ---: | --- | ---: | --- |",
     ]
     for book, seeds in sorted(records.items()):
-        said = Counter(each["recommended"] for each in seeds.values())
+        message = Counter(each["recommended"] for each in seeds.values())
         trials = sorted(each["trials"] for each in seeds.values())
         always = ", ".join(sorted(_always_cheapest(seeds))) or "–"
-        names = ", ".join(f"{name} ({count})" if len(said) > 1 else str(name) for name, count in said.most_common())
+        names = ", ".join(
+            f"{name} ({count})" if len(message) > 1 else str(name) for name, count in message.most_common()
+        )
         rows.append(f"| `{book}` | {len(seeds)} | {names} | {trials[0]:,} to {trials[-1]:,} | {always} |")
     return "\n".join(rows)
 
@@ -159,9 +161,9 @@ def main(given: Sequence[str] | None = None) -> None:
     _end(faults(records), f"{len(records)} workbooks, one advice each")
 
 
-def _end(found: Sequence[str], otherwise: str) -> NoReturn:
-    print("\n".join(found) or otherwise)
-    raise SystemExit(1 if found else 0)
+def _end(result: Sequence[str], otherwise: str) -> NoReturn:
+    print("\n".join(result) or otherwise)
+    raise SystemExit(1 if result else 0)
 
 
 if __name__ == "__main__":

@@ -148,16 +148,16 @@ def _normal(share: float) -> float:
 def measure(book: KnownBook, folder: Path) -> Record:
     """What is stated of a book, what is true, and what either costs."""
     model, truth = load(book.write(folder)), truth_of(book)
-    found = study(model, seed=1, **quick_settings({}))
-    best = choice(found)
-    usable = [each for each in (*found.curves, *found.engines) if _is_judged(each, best.needs[each])]
+    result = study(model, seed=1, **quick_settings({}))
+    best = choice(result)
+    usable = [each for each in (*result.curves, *result.engines) if _is_judged(each, best.needs[each])]
     needs: dict[str, Record] = {}
     for curve in usable:
         stated = best.needs[curve].trials
         exact = curve.method.errors == "independent"
-        true = truth.trials if exact else true_need(model, curve.method, stated, found.ladder[0], truth)
+        true = truth.trials if exact else true_need(model, curve.method, stated, result.ladder[0], truth)
         needs[curve.method.key] = {"stated": round(stated), "true": round(true), "ratio": round(stated / true, 3)}
-    for curve, seconds in zip(usable, true_seconds(found, usable, needs), strict=True):
+    for curve, seconds in zip(usable, true_seconds(result, usable, needs), strict=True):
         needs[curve.method.key]["seconds"] = float(f"{seconds:.3g}")
     return {"recommended": best.chosen and best.chosen.method.key, "needs": needs}
 
@@ -168,40 +168,42 @@ def _is_judged(curve: Curve, stated: Need) -> bool:
     return stated.usable and curve.lengths[-1].measured and quick
 
 
-def true_seconds(found: Study, curves: Sequence[Curve], needs: dict[str, Record]) -> list[float]:
+def true_seconds(result: Study, curves: Sequence[Curve], needs: dict[str, Record]) -> list[float]:
     """Seconds of a run of the true need; beyond a million trials at the rate of a million."""
     fastest = [math.inf] * len(curves)
     for turn in range(TURNS):
         for place, curve in enumerate(curves):
             true = needs[curve.method.key]["true"]
             run = min(true, MOST_RUN)
-            seconds = curve.method.run(found.model, run, 20_000 + turn).seconds
+            seconds = curve.method.run(result.model, run, 20_000 + turn).seconds
             fastest[place] = min(fastest[place], seconds * true / run)
-    return [each + ENGINE_READY * (curve in found.engines) for each, curve in zip(fastest, curves, strict=True)]
+    return [each + ENGINE_READY * (curve in result.engines) for each, curve in zip(fastest, curves, strict=True)]
 
 
 def misses(records: dict[str, Record]) -> list[str]:
     """Where a bar is missed."""
-    said = []
-    for book, found in records.items():
-        needs, recommended = found["needs"], found["recommended"]
+    message = []
+    for book, result in records.items():
+        needs, recommended = result["needs"], result["recommended"]
         if recommended is None:
-            said.append(f"{book}: nothing is recommended")
+            message.append(f"{book}: nothing is recommended")
             continue
-        said += _beyond(book, {recommended: needs[recommended]})
+        message += _beyond(book, {recommended: needs[recommended]})
         least = min(needs, key=lambda key: needs[key]["seconds"])
         cost, cheapest = needs[recommended]["seconds"], needs[least]["seconds"]
         if cost > max(DEARER * cheapest, cheapest + NO_TIME):
-            said.append(f"{book}: {recommended} is recommended, {cost:.2g} s, where {least} takes {cheapest:.2g} s")
-    return said
+            message.append(f"{book}: {recommended} is recommended, {cost:.2g} s, where {least} takes {cheapest:.2g} s")
+    return message
 
 
 def misstated(records: dict[str, Record]) -> list[str]:
     """Needs of methods that are not recommended and that are stated wrong by more than a factor of two: no miss."""
     return [
-        said
-        for book, found in records.items()
-        for said in _beyond(book, {key: each for key, each in found["needs"].items() if key != found["recommended"]})
+        message
+        for book, result in records.items()
+        for message in _beyond(
+            book, {key: each for key, each in result["needs"].items() if key != result["recommended"]}
+        )
     ]
 
 
@@ -215,14 +217,14 @@ def _beyond(book: str, needs: dict[str, Record]) -> list[str]:
 
 def table(records: dict[str, Record]) -> str:
     """One row a book: its forecast, and of every method that was judged the stated and the true need."""
-    keys = list(dict.fromkeys(key for found in records.values() for key in found["needs"] if "/" not in key))
+    keys = list(dict.fromkeys(key for results in records.values() for key in results["needs"] if "/" not in key))
     rows = [
         f"| Forecast | Recommended | Its cost over the least | {' | '.join(f'{key}: stated, true' for key in keys)} |",
         f"| --- | --- | ---: |{' ---: |' * len(keys)}",
     ]
     formulas = {book.name: book.words for book in KNOWN}
-    for name, found in records.items():
-        needs, recommended = found["needs"], found["recommended"]
+    for name, result in records.items():
+        needs, recommended = result["needs"], result["recommended"]
         cost = needs[recommended]["seconds"] / min(each["seconds"] for each in needs.values())
         more = needs[recommended]["seconds"] - min(each["seconds"] for each in needs.values())
         shown = f"{cost:.2f}" if cost <= DEARER else f"{cost:.1f}, {1_000 * more:.0f} ms more"
@@ -239,5 +241,5 @@ def compare_with_truth(folder: Path, books: Sequence[KnownBook] = KNOWN) -> list
         print(book.name, json.dumps(records[book.name]), flush=True)
         RESULTS.write_text(json.dumps(records, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
     PAGE.write_text(placed(PAGE.read_text(encoding="utf-8"), "truth", table(records)), encoding="utf-8")
-    print("\n".join(f"of a method that is not recommended: {said}" for said in misstated(records)))
+    print("\n".join(f"of a method that is not recommended: {message}" for message in misstated(records)))
     return misses(records)

@@ -85,8 +85,8 @@ def main(given: Sequence[str] | None = None) -> None:
     try:
         print("| cell | numpy, ns | jit, ns | saved, ns |\n| --- | ---: | ---: | ---: |")
         for name, formula in formulas.items():
-            found = measured(formula, trials, rounds)
-            figures = found["numpy"], found["jit"], found["numpy"] - found["jit"]
+            result = measured(formula, trials, rounds)
+            figures = result["numpy"], result["jit"], result["numpy"] - result["jit"]
             print(f"| {name} | {' | '.join(f'{figure:.2f}' for figure in figures)} |", flush=True)
     finally:
         program.loops_pay = chosen

@@ -27,10 +27,10 @@ def main() -> None:
     assert engine in ENGINES
     start = perf_counter()
     model = load(given["path"])
-    found: dict[str, Any] = {"version": xlmc.__version__, "loading": perf_counter() - start}
+    result: dict[str, Any] = {"version": xlmc.__version__, "loading": perf_counter() - start}
     start = perf_counter()
     program = model.program(engine)
-    found["program"] = perf_counter() - start
+    result["program"] = perf_counter() - start
     block = min(BLOCK, program.largest_block)
 
     def run(trials: int) -> None:
@@ -38,14 +38,14 @@ def main() -> None:
 
     start = perf_counter()
     run(block)
-    found["first"] = perf_counter() - start
+    result["first"] = perf_counter() - start
     if given["trials"]:
-        found["runs"] = [_shortest(run, trials) for trials in given["trials"]]
+        result["runs"] = [_shortest(run, trials) for trials in given["trials"]]
     else:
-        rate, found["trials"] = measured(run, block, given["seconds"])
-        found["a trial"] = 1 / rate
-        found["block"] = block
-    print(json.dumps(found), flush=True)
+        rate, result["trials"] = measured(run, block, given["seconds"])
+        result["a trial"] = 1 / rate
+        result["block"] = block
+    print(json.dumps(result), flush=True)
 
 
 def _shortest(run: Any, trials: int) -> float:

@@ -25,7 +25,7 @@ def main() -> None:
     """Ask for everything once, in the order in which a person would."""
     given = json.loads(sys.stdin.readline())
     book, folder = Path(given["path"]), Path(given["folder"])
-    found: dict[str, Any] = {"version": xlmc.__version__}
+    result: dict[str, Any] = {"version": xlmc.__version__}
     wanted = {"load", "run", *given["steps"]}
 
     def step(name: str, ask: Callable[[], Any]) -> Any:
@@ -35,14 +35,14 @@ def main() -> None:
             _CLEAR.write_text("5", encoding="utf-8")
         start = process_time()
         answer = ask()
-        found[name] = {"seconds": process_time() - start, "megabytes": _peak()}
-        print(f"{name} {found[name]['seconds']:.2f} s", file=sys.stderr, flush=True)
+        result[name] = {"seconds": process_time() - start, "megabytes": _peak()}
+        print(f"{name} {result[name]['seconds']:.2f} s", file=sys.stderr, flush=True)
         return answer
 
     model = step("load", lambda: xlmc.load(book))
     step("check", lambda: xlmc.check(book))
     run = step("run", lambda: model.simulate(seed=1, **given["options"]))
-    found["trials"], found["accepted"] = run.trials, run.accepted
+    result["trials"], result["accepted"] = run.trials, run.accepted
     step("statistics", lambda: [each.statistics for each in run.results.values()])
     step("sensitivity", lambda: xlmc.sensitivities(run))
     step("sheets", lambda: run.save(folder / "out.xlsx", overwrite=True))
@@ -51,8 +51,8 @@ def main() -> None:
     step("save", lambda: keep(run._run, folder / "out.xlmcrun", overwrite=True))
     step("open", lambda: open_run(folder / "out.xlmcrun"))
     step("replay", lambda: xlmc.replay(folder / "out.xlmcrun"))
-    found["bytes"] = {each.suffix: each.stat().st_size for each in folder.glob("out.*")}
-    print(json.dumps(found), flush=True)
+    result["bytes"] = {each.suffix: each.stat().st_size for each in folder.glob("out.*")}
+    print(json.dumps(result), flush=True)
 
 
 def _peak() -> float | None:

@@ -182,10 +182,10 @@ def coverage(model: xlmc.Model, problem: Problem, runs: int) -> tuple[int, int]:
     """
     stated = held = 0
     for seed in range(runs):
-        found = model.optimise(maximise=problem.goal, trials=2_000, seed=2 * seed + 10_000, indifference=0.2, runs=60)
-        if found.confidence >= 0.95:
+        result = model.optimise(maximise=problem.goal, trials=2_000, seed=2 * seed + 10_000, indifference=0.2, runs=60)
+        if result.confidence >= 0.95:
             stated += 1
-            held += problem.optimum - problem.true(found.values) <= found.indifference
+            held += problem.optimum - problem.true(result.values) <= result.indifference
     return stated, held
 
 
@@ -207,14 +207,14 @@ def main() -> int:
                 model.simulate(problem.trials, seed=seed)
             plain, began, within, gaps = (time.process_time() - began) / 3, time.process_time(), 0, []
             for seed in range(asked.seeds):
-                found = model.optimise(
+                result = model.optimise(
                     maximise=problem.goal, subject_to=problem.requirements, trials=problem.trials, seed=2 * seed
                 )
-                gap = problem.optimum - problem.true(found.values)
-                gaps.append(gap / found.indifference)
-                within += gap <= found.indifference
+                gap = problem.optimum - problem.true(result.values)
+                gaps.append(gap / result.indifference)
+                within += gap <= result.indifference
             cost = (time.process_time() - began) / asked.seeds / plain
-            trials = found.trials / problem.trials
+            trials = result.trials / problem.trials
             print(
                 f"{name}: within the indifference of the optimum with {within} of {asked.seeds} seeds, at most "
                 f"{max(gaps):.2f} of it away; {cost:.0f} plain runs of time, {trials:.0f} of trials"

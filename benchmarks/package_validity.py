@@ -83,8 +83,8 @@ def new_errors(result: bytes, book: bytes, ending: str, folder: Path) -> Counter
     paths = Path(folder, f"result{ending}"), Path(folder, f"book{ending}")
     for path, data in zip(paths, (result, book), strict=True):
         path.write_bytes(data)
-    found = errors_of(paths[0])
-    return found - errors_of(paths[1]) if found else found
+    results = errors_of(paths[0])
+    return results - errors_of(paths[1]) if results else results
 
 
 def main() -> int:
@@ -115,8 +115,8 @@ def main() -> int:
                 new -= shares
             checked += 1
             worse += bool(new)
-            for (said, part), count in new.items():
-                print(f"{name}: {count} × {part}: {said}", flush=True)
+            for (message, part), count in new.items():
+                print(f"{name}: {count} × {part}: {message}", flush=True)
     print(f"{checked} workbooks checked, {refused} refused, {worse} with an error that was not there before")
     if percentages:
         print(f"percentages in strict workbooks, which the SDK reads as numbers: {percentages}")

@@ -77,8 +77,8 @@ def part_of(stack: Sequence[_Place]) -> str:
 
 def _package(file: str) -> str | None:
     """Return the name of the installed package that a file belongs to; None if it is none."""
-    _, found, below = file.replace(os.sep, "/").rpartition("/site-packages/")
-    return below.split("/")[0] if found else None
+    _, result, below = file.replace(os.sep, "/").rpartition("/site-packages/")
+    return below.split("/")[0] if result else None
 
 
 def _watch(arguments: Sequence[str], target: Path) -> None:
@@ -137,10 +137,10 @@ def main(arguments: Sequence[str] | None = None) -> None:
             done = subprocess.run(asked, env=environment, capture_output=True, text=True, check=False)
             if done.returncode not in (0, 1):  # 1: the run finished, and warns of its answer
                 raise SystemExit(done.stderr)
-            found = json.loads((folder / "seen.json").read_text(encoding="utf-8"))
+            result = json.loads((folder / "seen.json").read_text(encoding="utf-8"))
             if number:  # the first one compiles
-                seen.update(found["seen"])
-                seconds += found["seconds"] / given.runs
+                seen.update(result["seen"])
+                seconds += result["seconds"] / given.runs
     print(table(seen, seconds))
 
 

@@ -215,15 +215,15 @@ def measure(path: Path, case: Sequence[Any], turns: int) -> dict[str, list[float
 
 def speeds(rounds: Sequence[dict[str, list[float]]]) -> dict[str, dict[str, list[float]]]:
     """Way -> base -> how many times as fast as the base in the same turn: quartiles over the turns of all rounds."""
-    found: dict[str, dict[str, list[float]]] = {}
+    result: dict[str, dict[str, list[float]]] = {}
     for way in (each for each in rounds[0] if each not in (ONE, OWN)):
         bases = {"one job": ONE, "own": f"{OWN}{way[way.find(',') :]}" if "," in way else OWN}
         for name, base in bases.items():
             if base in rounds[0] and base != way:
                 pairs = [pair for each in rounds for pair in zip(each[base], each[way], strict=True)]
                 ratios = quantiles((there / here for there, here in pairs), n=4, method="inclusive")
-                found.setdefault(way, {})[name] = [round(ratio, 2) for ratio in ratios]
-    return found
+                result.setdefault(way, {})[name] = [round(ratio, 2) for ratio in ratios]
+    return result
 
 
 def main() -> None:
@@ -238,9 +238,9 @@ def main() -> None:
     first_in_line()
     if chosen.child:
         name, *given = json.loads(chosen.child)
-        found = {"in_turn": in_turn, "once": once}[name](*given)
-        if found:
-            print(json.dumps(found))
+        result = {"in_turn": in_turn, "once": once}[name](*given)
+        if result:
+            print(json.dumps(result))
         return
     seconds: dict[str, list[dict[str, list[float]]]] = {}
     with tempfile.TemporaryDirectory() as folder:
@@ -257,8 +257,8 @@ def main() -> None:
 def _write(path: Path, seconds: dict[str, list[dict[str, list[float]]]]) -> None:
     described = machine.describe()
     described["packages"] |= {"loky": version("loky")}
-    found = {name: {"speeds": speeds(rounds), "seconds": rounds} for name, rounds in seconds.items()}
-    path.write_text(json.dumps({"machine": described, "found": found}, indent=1) + "\n", encoding="utf-8")
+    result = {name: {"speeds": speeds(rounds), "seconds": rounds} for name, rounds in seconds.items()}
+    path.write_text(json.dumps({"machine": described, "found": result}, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

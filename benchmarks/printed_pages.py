@@ -130,19 +130,19 @@ def beyond(name: str, pages: Pages) -> list[str]:
     """Return what is more or less than it may be, in words."""
     most = MOST_OF_CASE if name == CASE_STUDY else MOST
     counts = [each.total() for each in pages.workbooks]
-    found = [f"{name} prints on {count} pages, of {most} at most" for count in counts if count > most]
+    result = [f"{name} prints on {count} pages, of {most} at most" for count in counts if count > most]
     if pages.report not in REPORT:
-        found.append(f"the report of {name} has {pages.report} pages, not {REPORT[0]} to {REPORT[-1]}")
-    return found
+        result.append(f"the report of {name} has {pages.report} pages, not {REPORT[0]} to {REPORT[-1]}")
+    return result
 
 
-def table(found: dict[str, Pages], *, sheets: bool = False) -> str:
+def table(result: dict[str, Pages], *, sheets: bool = False) -> str:
     """Return the counts as a table in Markdown."""
-    further = max((len(pages.workbooks) for pages in found.values()), default=1) - 1
-    word = any(pages.word is not None for pages in found.values())
+    further = max((len(pages.workbooks) for pages in result.values()), default=1) - 1
+    word = any(pages.word is not None for pages in result.values())
     heads = ["workbook, pages", *["with the fonts"] * further, "report, pages", *["Word, pages"] * word]
     lines = [f"| book | {' | '.join(heads)} |", f"|---|{'---:|' * len(heads)}"]
-    for name, pages in found.items():
+    for name, pages in result.items():
         counts = [*(each.total() for each in pages.workbooks), pages.report, *[pages.word] * word]
         lines.append(f"| {name} | {' | '.join(map(str, counts))} |")
         if sheets:
@@ -169,11 +169,11 @@ def main() -> None:
     with tempfile.TemporaryDirectory() as temporary:
         folder = Path(temporary) if options.keep is None else options.keep.resolve()
         folder.mkdir(parents=True, exist_ok=True)
-        found = counted(
+        result = counted(
             options.names or list(BOOKS), folder, trials=options.trials, fonts=options.fonts, word=options.word
         )
-    print(table(found, sheets=options.sheets))
-    found_beyond = [line for name, pages in found.items() for line in beyond(name, pages)]
+    print(table(result, sheets=options.sheets))
+    found_beyond = [line for name, pages in result.items() for line in beyond(name, pages)]
     print("\n".join(["", *found_beyond]) if found_beyond else "\nAll books are within the bars.")
     raise SystemExit(bool(found_beyond))
 

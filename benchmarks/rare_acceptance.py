@@ -53,17 +53,17 @@ Answers = list[Estimate]
 """By labels."""
 
 
-def estimates(found: Found, values: Floats) -> Answers:
+def estimates(result: Found, values: Floats) -> Answers:
     """By STATISTICS."""
-    assert found.resampled is not None
+    assert result.resampled is not None
     sample = xs.Sample.of(values)
     moments = [xs.mean(sample), xs.standard_deviation(sample), xs.median(sample)]
-    return [found.resampled.acceptance, *moments, *xs.central_interval(sample)]
+    return [result.resampled.acceptance, *moments, *xs.central_interval(sample)]
 
 
-def covered(found: Sequence[Estimate], truth: Sequence[float]) -> list[bool]:
+def covered(result: Sequence[Estimate], truth: Sequence[float]) -> list[bool]:
     """Whether each interval holds its truth."""
-    ends = [each.interval or (math.nan, math.nan) for each in found]
+    ends = [each.interval or (math.nan, math.nan) for each in result]
     return [low <= true <= high for (low, high), true in zip(ends, truth, strict=True)]
 
 
@@ -87,9 +87,9 @@ def faults(problems: Mapping[str, Entry]) -> list[str]:
 def analytic(name: str, seed: int) -> tuple[Answers, int]:
     """One run of a problem with a known answer, and how many trials it computed."""
     problem = PROBLEMS[name]
-    found = one_run(problem.distance, problem.dimensions, seed, WANTED)
-    assert found.resampled is not None
-    return estimates(found, problem.forecast(found.resampled.points)), found.evaluations
+    result = one_run(problem.distance, problem.dimensions, seed, WANTED)
+    assert result.resampled is not None
+    return estimates(result, problem.forecast(result.resampled.points)), result.evaluations
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,12 +137,12 @@ def measured(subject: Subject, runs: int, jobs: int, keep: Callable[[Entry], Non
     keep({**subject.about, **counts, **costs, "methods": compared(*subject.region)})
 
 
-def coverage_table(found: Mapping[str, Entry]) -> str:
+def coverage_table(result: Mapping[str, Entry]) -> str:
     """Coverage in percent, as Markdown; a line a forecast."""
     lines = ["| problem | accepted | runs | evaluations | plain rejection | " + " | ".join(STATISTICS) + " |"]
     lines.append("|---|---:|---:|---:|---:|" + "---:|" * len(STATISTICS))
     values = len(STATISTICS) - 1
-    for each in found.values():
+    for each in result.values():
         plain = each["wanted"] / each["acceptance"]
         share = [f"{100.0 * hits / each['runs']:.1f}" for hits in each["hits"]]
         costs = f"{each['acceptance']:.1e} | {each['runs']:,} | {each['evaluations']:,.0f} "
@@ -154,11 +154,11 @@ def coverage_table(found: Mapping[str, Entry]) -> str:
     return "\n".join(lines)
 
 
-def method_table(found: Mapping[str, Any]) -> str:
+def method_table(result: Mapping[str, Any]) -> str:
     """Trials for an error of 1 %, as Markdown."""
     heads = ("plain rejection", "splitting alone", "grid", "mixture, weighted", "mixture, equal weights")
     lines = ["| problem | " + " | ".join(heads) + " | to learn |", "|---|" + "---:|" * 6]
-    for each in found.values():
+    for each in result.values():
         if "methods" in each:
             how = each["methods"]
             trials = (1e4 / each["acceptance"], *(how[key] for key in ("splitting", "grid", "mixture", "equal")))
@@ -176,19 +176,19 @@ def main() -> None:
     parser.add_argument("--page", type=Path, default=PAGE)
     given = parser.parse_args()
     os.environ["OPENBLAS_NUM_THREADS"] = "1"  # in the processes to come: each has one core
-    found: dict[str, Entry] = json.loads(given.results.read_text(encoding="utf-8")) if given.results.exists() else {}
+    result: dict[str, Entry] = json.loads(given.results.read_text(encoding="utf-8")) if given.results.exists() else {}
     for name in given.only or NAMES:
 
         def keep(entry: Entry, name: str = name) -> None:
-            found[name] = entry
-            given.results.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
+            result[name] = entry
+            given.results.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
             print(name, entry["runs"], entry["hits"], flush=True)
 
         measured(subject(name, given.jobs), given.runs, given.jobs, keep)
     if given.page.exists():
-        page = placed(given.page.read_text(encoding="utf-8"), "rare-coverage", coverage_table(found))
-        given.page.write_text(placed(page, "rare-methods", method_table(found)), encoding="utf-8")
-    missed = faults(found)
+        page = placed(given.page.read_text(encoding="utf-8"), "rare-coverage", coverage_table(result))
+        given.page.write_text(placed(page, "rare-methods", method_table(result)), encoding="utf-8")
+    missed = faults(result)
     print("\n".join(missed) or "every cell meets the bar")
     sys.exit(1 if missed else 0)
 

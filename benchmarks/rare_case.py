@@ -80,6 +80,6 @@ def within(mine: Estimate, true: Estimate) -> bool:
     return low <= true.value <= high
 
 
-def held(truth: Sequence[Estimate], found: Sequence[Estimate]) -> list[bool]:
+def held(truth: Sequence[Estimate], estimates: Sequence[Estimate]) -> list[bool]:
     """Whether each interval holds its truth."""
-    return [within(mine, true) for mine, true in zip(found, truth, strict=True)]
+    return [within(mine, true) for mine, true in zip(estimates, truth, strict=True)]

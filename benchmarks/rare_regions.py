@@ -55,9 +55,9 @@ class Run(NamedTuple):
 
 def one(book: RareBook, seed: int) -> Run:
     """A run of that seed."""
-    found = run_model(book.model, RunOptions.of(seed=seed, until_accepted=WANTED))
-    low, high = found.acceptance.interval or (0.0, 0.0)
-    return Run(found.acceptance.value, low, high, bool(found.warnings), found.evaluated)
+    result = run_model(book.model, RunOptions.of(seed=seed, until_accepted=WANTED))
+    low, high = result.acceptance.interval or (0.0, 0.0)
+    return Run(result.acceptance.value, low, high, bool(result.warnings), result.evaluated)
 
 
 class Judged(NamedTuple):
@@ -87,44 +87,44 @@ def judged(runs: Sequence[Run], truth: float) -> Judged:
     )
 
 
-def wrong(found: Mapping[str, Judged]) -> Iterator[str]:
+def wrong(result: Mapping[str, Judged]) -> Iterator[str]:
     """The books with runs that are wrong without a warning."""
-    for name, each in found.items():
+    for name, each in result.items():
         if each.wrong:
             yield f"{name}: {each.wrong} runs of {each.runs} are wrong without a warning"
 
 
-def uncovered(found: Mapping[str, Judged]) -> Iterator[str]:
+def uncovered(result: Mapping[str, Judged]) -> Iterator[str]:
     """Whether too few intervals of the runs without a warning hold the truth."""
-    silent = sum(each.silent for each in found.values())
-    held = sum(each.held for each in found.values())
+    silent = sum(each.silent for each in result.values())
+    held = sum(each.held for each in result.values())
     if held < LEAST_COVERED * silent:
         yield f"of {silent} runs without a warning {held} hold the truth"
 
 
-def faults(found: Mapping[str, Judged], before: Mapping[str, Judged]) -> Iterator[str]:
+def faults(result: Mapping[str, Judged], before: Mapping[str, Judged]) -> Iterator[str]:
     """What misses the bar."""
-    yield from wrong(found)
-    for name, each in found.items():
+    yield from wrong(result)
+    for name, each in result.items():
         if name in ORDINARY and each.warned > MOST_WARNED * each.runs:
             yield f"{name}: {each.warned} runs of {each.runs} warn"
         if name in ORDINARY and name in before and each.width > MOST_WIDER * before[name].width:
             yield f"{name}: intervals are {each.width / before[name].width:.2f} times as wide"
         if name in ORDINARY and name in before and each.work > MOST_WORK * before[name].work:
             yield f"{name}: the work is {each.work / before[name].work:.2f} times as much"
-    yield from uncovered(found)
-    quiet = sum(found[name].warned * 2 < found[name].runs for name in SEVERAL if name in found)
+    yield from uncovered(result)
+    quiet = sum(result[name].warned * 2 < result[name].runs for name in SEVERAL if name in result)
     if quiet < 8:
         yield f"only {quiet} of the books with several regions end without a warning in most runs"
 
 
-def lines(books: Mapping[str, RareBook], found: Mapping[str, Judged], last: str, cells: Mapping[str, str]) -> str:
+def lines(books: Mapping[str, RareBook], result: Mapping[str, Judged], last: str, cells: Mapping[str, str]) -> str:
     """As Markdown, a line a book; the last column has a heading and a cell for each book."""
     made = [
         f"| book | probability | runs | warned | interval holds | wrong, unwarned | evaluations | {last} |",
         "|---|---:|---:|---:|---:|---:|---:|---:|",
     ]
-    for name, each in found.items():
+    for name, each in result.items():
         held = f"{each.held / each.silent:.0%}" if each.silent else "–"
         made.append(
             f"| {books[name].words} | {books[name].truth:.2e} | {each.runs} | {each.warned} | {held} | {each.wrong} "
@@ -133,14 +133,14 @@ def lines(books: Mapping[str, RareBook], found: Mapping[str, Judged], last: str,
     return "\n".join(made)
 
 
-def table(found: Mapping[str, Judged], before: Mapping[str, Judged]) -> str:
+def table(result: Mapping[str, Judged], before: Mapping[str, Judged]) -> str:
     """A line a book, beside the version of before where it was run."""
 
     def beside(name: str, each: Judged) -> str:
         old = before.get(name)
         return "–" if old is None else f"{each.width / old.width:.2f}, {each.work / old.work:.2f}"
 
-    return lines(BOOKS, found, "width, work: ×", {name: beside(name, each) for name, each in found.items()})
+    return lines(BOOKS, result, "width, work: ×", {name: beside(name, each) for name, each in result.items()})
 
 
 Kept = dict[str, dict[str, list[list[Any]]]]
@@ -161,8 +161,8 @@ def measured(kept: Kept, version: str, names: Sequence[str], runs: int, until: f
 
 def read(results: Path) -> Kept:
     """What there is so far."""
-    found: Kept = json.loads(results.read_text(encoding="utf-8")) if results.exists() else {}
-    return found
+    result: Kept = json.loads(results.read_text(encoding="utf-8")) if results.exists() else {}
+    return result
 
 
 def main() -> None:

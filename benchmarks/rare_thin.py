@@ -35,18 +35,18 @@ Kept = dict[str, list[list[Any]]]
 """Book -> runs by seed: what `Run` holds, and the seconds of processor time."""
 
 
-def faults(found: Mapping[str, Judged], seconds: Mapping[str, float]) -> Iterator[str]:
+def faults(result: Mapping[str, Judged], seconds: Mapping[str, float]) -> Iterator[str]:
     """What misses the bar."""
-    yield from wrong(found)
-    for name in found:
+    yield from wrong(result)
+    for name in result:
         if seconds[name] > SLOWEST:
             yield f"{name}: a run takes {seconds[name]:.0f} s of processor time"
-    yield from uncovered(found)
+    yield from uncovered(result)
 
 
-def table(found: Mapping[str, Judged], seconds: Mapping[str, float]) -> str:
+def table(result: Mapping[str, Judged], seconds: Mapping[str, float]) -> str:
     """As Markdown, a line a book, with the processor time of its slowest run."""
-    return lines(THIN, found, "slowest, s", {name: f"{seconds[name]:.0f}" for name in found})
+    return lines(THIN, result, "slowest, s", {name: f"{seconds[name]:.0f}" for name in result})
 
 
 def measured(kept: Kept, names: Sequence[str], runs: int, until: float, results: Path) -> None:
@@ -75,14 +75,14 @@ def main() -> None:
     if not given.table:
         measured(kept, given.only or list(THIN), given.runs, time.monotonic() + 60.0 * given.minutes, given.results)
     runs = {name: kept[name] for name in THIN if kept.get(name)}
-    found = {name: judged([Run(*run[:-1]) for run in each], THIN[name].truth) for name, each in runs.items()}
+    result = {name: judged([Run(*run[:-1]) for run in each], THIN[name].truth) for name, each in runs.items()}
     seconds = {name: max(float(run[-1]) for run in each) for name, each in runs.items()}
-    text = table(found, seconds)
+    text = table(result, seconds)
     print(text)
     print(f"seconds, medians: { {name: statistics.median(run[-1] for run in each) for name, each in runs.items()} }")
     if given.table:
         PAGE.write_text(placed(PAGE.read_text(encoding="utf-8"), "rare-thin", text), encoding="utf-8")
-    missed = list(faults(found, seconds))
+    missed = list(faults(result, seconds))
     print("\n".join(missed) or "nothing misses the bar so far")
     raise SystemExit(1 if missed else 0)
 

@@ -49,31 +49,31 @@ def measure(
     """Book -> contestant -> what was found. The contestants run one after another, round by round."""
     tasks = {book: task_of(book, path, seconds) for book, path in paths.items()}
     cells = {book: _cells(path) for book, path in paths.items()}
-    found: dict[str, Any] = {book: {} for book in paths}
+    result: dict[str, Any] = {book: {} for book in paths}
     best = {(b, e.name): _best_variant(e, tasks[b], limit, say) for b in paths for e in entries if b in e.books}
     for round_ in range(rounds):
         for book, entry in ((b, e) for b in paths for e in entries if b in e.books):
-            record = found[book].setdefault(entry.name, _blank(entry, best[book, entry.name]))
+            record = result[book].setdefault(entry.name, _blank(entry, best[book, entry.name]))
             if round_ and (record["absent"] or record["slow"]):
                 continue
             options = entry.variants.get(book, [{}])[record["variant"]]
             _one(record, entry, _with(tasks[book], options), limit)
             say(f"round {round_ + 1}, {book}, {entry.name}: {_said(record)}")
-    for book, records in found.items():
+    for book, records in result.items():
         _compare(tasks[book], records)
         _ratios(records)
         _costs(records, cells[book])
-    return found
+    return result
 
 
 def differing(task: Task, values: Sequence[Sequence[float | None]], truth: Sequence[Sequence[float]]) -> list[str]:
     """The forecasts that are not the same, each with its cell. Only numbers count."""
-    found = []
+    result = []
     for trial, (row, true) in enumerate(zip(values, truth, strict=False)):
         for place, mine, theirs in zip(task.forecasts, row, true, strict=True):
             if mine is None or abs(mine - theirs) > TOLERANCE * max(abs(mine), abs(theirs)):
-                found.append(f"{place} in check trial {trial + 1}: {mine!r}, not {theirs!r}")
-    return found
+                result.append(f"{place} in check trial {trial + 1}: {mine!r}, not {theirs!r}")
+    return result
 
 
 def _blank(entry: Entry, variant: int) -> dict[str, Any]:

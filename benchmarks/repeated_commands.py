@@ -191,8 +191,8 @@ def run_afresh(command: str, more: Sequence[str], folder: Path) -> int:
 
 def record_of(path: Path) -> dict[str, Any]:
     """The section on the run in the record of a JSON file."""
-    found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))["record"]["run"]
-    return found
+    result: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))["record"]["run"]
+    return result
 
 
 def command_of(path: Path) -> str:
@@ -228,7 +228,7 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", type=int, help="show this run")
     given = parser.parse_args()
-    found: list[dict[str, Any]] = []
+    result: list[dict[str, Any]] = []
     refused = 0
     for number in range(10**6) if given.only is None else [given.only]:
         case = drawn(random.Random(f"{given.seed} {number}"))
@@ -236,18 +236,18 @@ def main() -> None:
         if outcome is None:
             refused += 1
             continue
-        found.append({"number": number, **outcome})
+        result.append({"number": number, **outcome})
         if given.only is not None or not outcome["same"]:
-            print(json.dumps(found[-1], ensure_ascii=False), case, flush=True)
-        if len(found) == given.runs:
+            print(json.dumps(result[-1], ensure_ascii=False), case, flush=True)
+        if len(result) == given.runs:
             break
-    other = [each for each in found if not each["same"]]
+    other = [each for each in result if not each["same"]]
     summary = {
-        "runs": len(found),
-        "same": len(found) - len(other),
+        "runs": len(result),
+        "same": len(result) - len(other),
         "refused": refused,
         "seed": given.seed,
-        "kinds": dict(sorted(Counter(each["kind"] for each in found).items())),
+        "kinds": dict(sorted(Counter(each["kind"] for each in result).items())),
         "other": other,
     }
     print(json.dumps(summary, indent=2, ensure_ascii=False))

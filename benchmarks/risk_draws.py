@@ -149,11 +149,11 @@ def copulas(n: int) -> Iterator[tuple[str, float, float, float]]:
             u, v = drawn(calls, n, {**extra, "K1": name + reflected}).values()
             if reflected:
                 u, v = 1 - u, 1 - v
-            found = stats.kendalltau(u[:FEW], v[:FEW]).statistic
+            result = stats.kendalltau(u[:FEW], v[:FEW]).statistic
             low, high = both(0.01, 0.01), 1 - 2 * 0.99 + both(0.99, 0.99)
             shares = np.mean((u <= 0.01) & (v <= 0.01)), np.mean((u > 0.99) & (v > 0.99))
             errors = [(s - p) / math.sqrt(p * (1 - p) / n) for s, p in zip(shares, (low, high), strict=True)]
-            yield name + reflected, (found - tau) / (2 / 3 * math.sqrt(2 / FEW) * 1.0), *errors
+            yield name + reflected, (result - tau) / (2 / 3 * math.sqrt(2 / FEW) * 1.0), *errors
 
 
 HALF = [[1.0, 0.5], [0.5, 1.0]]
@@ -171,9 +171,9 @@ def main(n: int) -> int:
     print(f"{'form':58} {'mean':>7} {'variance':>9} {'K-S':>6}")
     for row, formula in enumerate(EXACT, start=1):  # a cell of its own gives each a random stream of its own
         (x,) = drawn({f"A{row}": formula}, n, {}).values()
-        found = distances(x, formula, rng)
-        worst = max([worst, *(abs(each) for each in found[:2] if each is not None), found[2]])
-        shown = ["–" if each is None else f"{each:.1f}" for each in found]
+        result = distances(x, formula, rng)
+        worst = max([worst, *(abs(each) for each in result[:2] if each is not None), result[2]])
+        shown = ["–" if each is None else f"{each:.1f}" for each in result]
         print(f"{formula:58} {shown[0]:>7} {shown[1]:>9} {shown[2]:>6}")
     print(f"\n{'copula':12} {'tau':>7} {'both low':>9} {'both high':>10}")
     for name, *errors in copulas(n):

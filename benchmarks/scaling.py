@@ -38,7 +38,7 @@ def measure(
 
     A run with one job takes about `seconds`. In a round each way has so many `turns`, of which the fastest counts.
     """
-    found: dict[str, Any] = {}
+    result: dict[str, Any] = {}
     for round_ in range(rounds):
         for entry in (each for each in entries if each.name in ENGINES):
             task = {
@@ -52,12 +52,12 @@ def measure(
             answer = answer_of(entry.python, "one_scaling.py", task, limit)
             if isinstance(answer, str):
                 raise RuntimeError(f"{entry.name}: {answer}")
-            rates = found.setdefault(entry.name, {way: [] for way in answer["seconds"]})
+            rates = result.setdefault(entry.name, {way: [] for way in answer["seconds"]})
             for way, taken in answer["seconds"].items():
                 runs = 2 if way == APART else 1
                 rates[way].append(runs * answer["trials"] / min(taken))
                 say(f"round {round_ + 1}, {entry.name}, {way}: {rates[way][-1]:,.4g}/s, {answer['trials']:,} trials")
-    for rates in found.values():
+    for rates in result.values():
         ratios = {way: [b / a for a, b in zip(rates[ONE], many, strict=True)] for way, many in rates.items()}
         rates["ratios"] = {way: statistics.median(ratio) for way, ratio in ratios.items() if way != ONE}
-    return found
+    return result

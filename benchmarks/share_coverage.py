@@ -93,21 +93,21 @@ def measure(name: str, trials: int, runs: int) -> Cell:
     """One problem with so many accepted trials, with the seeds from 0 on."""
     problem = PROBLEMS[name]
     truth = problem.truth
-    found = [one_run(problem, trials, seed) for seed in range(runs)]
-    holds = [_holds(each.interval, truth) for each in found]
-    bounded = [each.now.at_least and each.interval[0] <= truth for each in found]
-    width = np.median([each.interval[1] - each.interval[0] for each in found])
-    before = np.median([each.before[1] - each.before[0] for each in found])
+    result = [one_run(problem, trials, seed) for seed in range(runs)]
+    holds = [_holds(each.interval, truth) for each in result]
+    bounded = [each.now.at_least and each.interval[0] <= truth for each in result]
+    width = np.median([each.interval[1] - each.interval[0] for each in result])
+    before = np.median([each.before[1] - each.before[0] for each in result])
     return Cell(
         name,
         trials,
         runs,
         round(truth, 5),
-        round(float(np.mean([each.now.share.value for each in found])), 5),
+        round(float(np.mean([each.now.share.value for each in result])), 5),
         sum(holds),
         sum(map(max, holds, bounded)),
-        sum(each.now.at_least for each in found),
-        sum(_holds(each.before, truth) for each in found),
+        sum(each.now.at_least for each in result),
+        sum(_holds(each.before, truth) for each in result),
         round(float(width / before), 3),
     )
 

@@ -57,11 +57,11 @@ def gains(plain: Floats, other: Floats) -> tuple[list[float], list[tuple[float, 
     return [*ratios.tolist(), float(ratios.mean())], list(zip(low.tolist(), high.tolist(), strict=True))
 
 
-def table(found: Mapping[str, Any]) -> str:
+def table(result: Mapping[str, Any]) -> str:
     """The gains, as Markdown."""
-    lines = ["| case study | sampling | " + " | ".join(found["forecasts"]) + " | average |"]
-    lines += ["|---|---|" + "---:|" * (len(found["forecasts"]) + 1)]
-    for case, methods in found["gains"].items():
+    lines = ["| case study | sampling | " + " | ".join(result["forecasts"]) + " | average |"]
+    lines += ["|---|---|" + "---:|" * (len(result["forecasts"]) + 1)]
+    for case, methods in result["gains"].items():
         for method, (ratios, intervals) in methods.items():
             shown = [_shown(*each) for each in zip(ratios, intervals, strict=True)]
             lines.append(f"| {case} | {METHODS[method].name} | {' | '.join(shown)} |")
@@ -93,9 +93,9 @@ def main() -> None:
             if method != "mc":
                 measured[case][method] = gains(plain, means(model, method, range(SEEDS[case])))
                 print(case, method, measured[case][method], flush=True)
-    found = {"trials": TRIALS, "seeds": SEEDS, "forecasts": [f.name for f in book.forecasts], "gains": measured}
-    given.results.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    given.page.write_text(placed(given.page.read_text(encoding="utf-8"), "sobol", table(found)), encoding="utf-8")
+    result = {"trials": TRIALS, "seeds": SEEDS, "forecasts": [f.name for f in book.forecasts], "gains": measured}
+    given.results.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    given.page.write_text(placed(given.page.read_text(encoding="utf-8"), "sobol", table(result)), encoding="utf-8")
     missed = [case for case, least in LEAST.items() if measured[case]["sobol"][0][-1] < least]
     print(f"the bar is missed {' and '.join(missed)}" if missed else "the bar is met")
     sys.exit(1 if missed else 0)

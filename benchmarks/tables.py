@@ -41,12 +41,12 @@ def filled(text: str, results: Path) -> str:
         ValueError: a table's markers are missing.
     """
     paths = {name: results / f"{name}.json" for name in TABLES}
-    found = {name: json.loads(path.read_text(encoding="utf-8")) for name, path in paths.items() if path.exists()}
-    if not found:
+    result = {name: json.loads(path.read_text(encoding="utf-8")) for name, path in paths.items() if path.exists()}
+    if not result:
         return text
-    machine = next(iter(found.values()))["machine"]
+    machine = next(iter(result.values()))["machine"]
     text = placed(text, "machine", _machine(machine))
-    for name, given in found.items():
+    for name, given in result.items():
         table = TABLES[name](given["found"])
         text = placed(text, name, table if given["machine"] == machine else f"{table}\n\n{_machine(given['machine'])}")
     return text
@@ -65,8 +65,8 @@ def _machine(machine: dict[str, Any]) -> str:
     return f"{PROVISIONAL}\n\n{sentence(machine)}" if busy else sentence(machine)
 
 
-def _rates(found: dict[str, Any]) -> str:
-    return "\n\n".join(f"**{TITLES[book]}** (`{book}`)\n\n{_of_book(records)}" for book, records in found.items())
+def _rates(result: dict[str, Any]) -> str:
+    return "\n\n".join(f"**{TITLES[book]}** (`{book}`)\n\n{_of_book(records)}" for book, records in result.items())
 
 
 _OTHERS = ("xlmc/numpy", "xlmc/jit", "hand/NumPy", "hand/C")
@@ -99,7 +99,7 @@ def _notes(records: dict[str, Any]) -> str:
         f"{name}: {record['note']}" for name, record in shown if record["family"] == "hand" or name == "formualizer"
     ]
     peers = [record["versions"] for _, record in shown if record["family"] == "peer"]
-    versions = [f"{package} {number}" for found in peers for package, number in found.items()]
+    versions = [f"{package} {number}" for result in peers for package, number in result.items()]
     return f"{'; '.join([*ways, *versions])}."
 
 
@@ -108,27 +108,27 @@ def _same(record: dict[str, Any]) -> str:
     return f"yes, {trials}" if not record["differs"] else f"**no**: {record['differs'][0]}"
 
 
-def _scaling(found: dict[str, Any]) -> str:
+def _scaling(result: dict[str, Any]) -> str:
     words = {ANEW: "`-j 2`, a process started in every run", APART: "two programs at once, one job each", "2": "`-j 2`"}
     rows = []
-    for name, rates in found.items():
+    for name, rates in result.items():
         rows.append([name, "`-j 1`", _number(statistics.median(rates["1"])), "1"])
         for way, ratio in rates["ratios"].items():
             rows.append([name, words[way], _number(statistics.median(rates[way])), f"{ratio:.2f}"])
     return _table(["engine", "how", "trials/s", "ratio"], rows, "llrr")
 
 
-def _accuracy(found: dict[str, Any]) -> str:
+def _accuracy(result: dict[str, Any]) -> str:
     headings = ["contestant", "trials", "seconds", *(f"error of {name}, mph" for name in STATISTICS)]
     rows = []
-    for name, curve in found.items():
+    for name, curve in result.items():
         if not curve["by rate"]:
             for trials, seconds, error in zip(curve["trials"], curve["seconds"], curve["errors"], strict=True):
                 rows.append([name, f"{trials:,}", f"{seconds:.3g}", *(f"{value:.4f}" for value in error)])
     return _table(headings, rows, "lrr" + "r" * len(STATISTICS))
 
 
-def _memory(found: dict[str, Any]) -> str:
+def _memory(result: dict[str, Any]) -> str:
     rows = [
         [
             f"{run['trials']:,}",
@@ -137,15 +137,15 @@ def _memory(found: dict[str, Any]) -> str:
             f"{run['peak'] / 1e6:.0f}",
             f"{run['before'] / 1e6:.0f}",
         ]
-        for run in found["runs"]
+        for run in result["runs"]
     ]
     headings = ["trials", "seconds", "ns a trial", "peak memory, MB", "before the run, MB"]
-    close = f"Longest over shortest run: cost of a trial {found['cost']:.3f}, peak memory {found['memory']:.2f}."
+    close = f"Longest over shortest run: cost of a trial {result['cost']:.3f}, peak memory {result['memory']:.2f}."
     return f"{_table(headings, rows, 'rrrrr')}\n\n{close}"
 
 
-def _growth(found: dict[str, Any]) -> str:
-    return "\n\n".join(_growth_of(name, engines) for name, engines in found.items())
+def _growth(result: dict[str, Any]) -> str:
+    return "\n\n".join(_growth_of(name, engines) for name, engines in result.items())
 
 
 def _growth_of(series: str, engines: dict[str, Any]) -> str:
@@ -153,9 +153,9 @@ def _growth_of(series: str, engines: dict[str, Any]) -> str:
     columns = ("run",) if series == "trials" else COLUMNS
     shown = [(engine, column) for column in columns for engine in (engines if column != "loading" else ["numpy"])]
     sizes = sorted({point["size"] for points in engines.values() for point in points})
-    found = {(engine, column): seconds_of(engines[engine], column) for engine, column in shown}
-    rows = [[f"{size:,}", *(_seconds_at(*found[each], size) for each in shown)] for size in sizes]
-    slopes = [slope(*found[each]) if found[each][0] else None for each in shown]
+    result = {(engine, column): seconds_of(engines[engine], column) for engine, column in shown}
+    rows = [[f"{size:,}", *(_seconds_at(*result[each], size) for each in shown)] for size in sizes]
+    slopes = [slope(*result[each]) if result[each][0] else None for each in shown]
     rows.append(["*slope*", *("–" if value is None else f"*{value:.2f}*" for value in slopes)])
     headings = [series, *(_GROWTH_WORDS[column].format(engine) for engine, column in shown)]
     absent = [
@@ -180,14 +180,14 @@ _GROWTH_WORDS = {
 }
 
 
-def _whole_command(found: dict[str, Any]) -> str:
+def _whole_command(result: dict[str, Any]) -> str:
     labels = {
-        "xlmc": f"`xlmc simulate`, {found['trials']:,} trials, workbook written",
+        "xlmc": f"`xlmc simulate`, {result['trials']:,} trials, workbook written",
         "baseline": "the three imports, and the same sheets written from recorded calls",
         "imports": "of it the three imports alone",
     }
-    rows = [[label, f"{statistics.median(found[name]):.3f}"] for name, label in labels.items()]
-    close = f"Ratio of the first to the second, median of {len(found['xlmc'])} rounds: **{found['ratio']:.2f}**."
+    rows = [[label, f"{statistics.median(result[name]):.3f}"] for name, label in labels.items()]
+    close = f"Ratio of the first to the second, median of {len(result['xlmc'])} rounds: **{result['ratio']:.2f}**."
     return f"{_table(['process', 'seconds'], rows, 'lr')}\n\n{close}"
 
 

@@ -91,10 +91,10 @@ def one_run(problem: Problem, u: Floats, plan: SamplingPlan) -> Floats:
     kept = np.flatnonzero(problem.keeps(u))
     sample = xs.Sample.of(problem.forecast(u[:, kept]), None, plan.replicate_of(kept))
     ranks = xs.percentiles(sample, [100.0 * p for p in RANKS]).values()
-    found = [xs.mean(sample), xs.standard_deviation(sample), *ranks, xs.probability_above(sample, problem.above)]
-    ends = [each.interval or (-math.inf, math.inf) for each in found]
+    result = [xs.mean(sample), xs.standard_deviation(sample), *ranks, xs.probability_above(sample, problem.above)]
+    ends = [each.interval or (-math.inf, math.inf) for each in result]
     return np.array(
-        [(each.value, *end, told) for each, end, told in zip(found, ends, _told(sample, plan), strict=True)]
+        [(each.value, *end, messages) for each, end, messages in zip(result, ends, _told(sample, plan), strict=True)]
     )
 
 
@@ -110,13 +110,13 @@ def many_runs(problem: Problem, u: Floats, plan: SamplingPlan) -> Floats:
     ranks = [percentile(x, ascending, kept, p, plan.replicates) for p in RANKS]
     rows = zip(ascending, kept.sum(axis=1), strict=True)
     deviation = deviation._replace(told=deviation.told | [_tail_decides(row[:count]) for row, count in rows])
-    found = np.array([mean, deviation, *ranks, share(x > problem.above, kept, plan.replicates)])
+    result = np.array([mean, deviation, *ranks, share(x > problem.above, kept, plan.replicates)])
     accepted = kept.sum(axis=1)
     sparse = accepted < LEAST_ACCEPTED * plan.replicates
     hangs = (accepted >= TELLING) & (farthest > FARTHEST_PART)
-    found[:, 3] = np.maximum(found[:, 3], sparse)
-    found[:2, 3] = np.maximum(found[:2, 3], hangs | ((accepted < FEW) if not plan.replicates else False))
-    return np.moveaxis(found, -1, 0)
+    result[:, 3] = np.maximum(result[:, 3], sparse)
+    result[:2, 3] = np.maximum(result[:2, 3], hangs | ((accepted < FEW) if not plan.replicates else False))
+    return np.moveaxis(result, -1, 0)
 
 
 def _tail_decides(x: Floats) -> bool:
@@ -154,19 +154,19 @@ def _together(plan: SamplingPlan, seeds: range) -> Floats:
         for margin, rows in zip(plan.margins(seed, ("a", "b")), u, strict=True):
             margin.uniforms(0, rows[run])
     np.clip(u, 2.0**-54, 1.0 - 2.0**-53, out=u)
-    found = np.array([many_runs(problem, u, plan) for problem in PROBLEMS.values()])
+    result = np.array([many_runs(problem, u, plan) for problem in PROBLEMS.values()])
     if seeds[0] % CHECKED == 0:
         alone = np.array([one_run(problem, u[:, 0], plan) for problem in PROBLEMS.values()])
-        if not np.allclose(alone, found[:, 0], rtol=1e-7, atol=1e-12):
-            raise ArithmeticError(f"run {seeds[0]} of {plan}: {alone} beside {found[:, 0]}")
-    return found
+        if not np.allclose(alone, result[:, 0], rtol=1e-7, atol=1e-12):
+            raise ArithmeticError(f"run {seeds[0]} of {plan}: {alone} beside {result[:, 0]}")
+    return result
 
 
-def cells(method: str, trials: int, found: Floats) -> Iterator[Cell]:
+def cells(method: str, trials: int, floats: Floats) -> Iterator[Cell]:
     """What `measure` gave, problem by problem."""
     plan = SamplingPlan.of(method, trials)
-    for (name, problem), runs in zip(PROBLEMS.items(), found, strict=True):
-        value, low, high, told = np.moveaxis(runs, -1, 0)
+    for (name, problem), runs in zip(PROBLEMS.items(), floats, strict=True):
+        value, low, high, messages = np.moveaxis(runs, -1, 0)
         holds = (low <= problem.truth + 1e-9) & (problem.truth - 1e-9 <= high)
         exact = np.maximum(3.92 * value.std(axis=0, ddof=1), _seen(problem, plan))
         width = np.median(high - low, axis=0)
@@ -175,7 +175,7 @@ def cells(method: str, trials: int, found: Floats) -> Iterator[Cell]:
             for w, e in zip(width, exact, strict=True)
         ]
         hits, notices, silent = (
-            [int(each) for each in np.sum(column, axis=0)] for column in (holds, told, ~holds & (told == 0.0))
+            [int(each) for each in np.sum(column, axis=0)] for column in (holds, messages, ~holds & (messages == 0.0))
         )
         yield Cell(name, method, plan.trials, len(runs), hits, notices, shown, silent)
 
@@ -191,50 +191,50 @@ def _seen(problem: Problem, plan: SamplingPlan) -> Floats:
     return np.array([0.0, 0.0, *slopes, share])
 
 
-def faults(found: Sequence[Cell]) -> list[str]:
+def faults(result: Sequence[Cell]) -> list[str]:
     """What misses the bar by more than chance allows at a family-wise level of 1 %."""
-    level = FAMILY / (len(found) * len(STATISTICS))
+    level = FAMILY / (len(result) * len(STATISTICS))
     missed = []
-    for cell in found:
+    for cell in result:
         for number, statistic in enumerate(STATISTICS):
-            hits, told, width = cell.hits[number], cell.told[number], cell.width[number]
+            hits, messages, width = cell.hits[number], cell.told[number], cell.width[number]
             where = f"{cell.problem}, {cell.method}, {cell.trials:,} trials, {statistic}"
-            if bdtr(hits, cell.runs, LEAST) < level and told < TOLD * cell.runs:
-                missed.append(f"{where}: held in {hits / cell.runs:.1%}, told in {told / cell.runs:.1%}")
+            if bdtr(hits, cell.runs, LEAST) < level and messages < TOLD * cell.runs:
+                missed.append(f"{where}: held in {hits / cell.runs:.1%}, told in {messages / cell.runs:.1%}")
             if cell.silent and bdtr(cell.runs - cell.silent[number], cell.runs, 1.0 - SILENT) < level:
                 missed.append(f"{where}: missed without a notice in {cell.silent[number] / cell.runs:.1%}")
             if cell.problem not in ORDINARY or cell.trials < FROM:
                 continue
-            if told > SELDOM * cell.runs:
-                missed.append(f"{where}: told in {told / cell.runs:.1%}")
+            if messages > SELDOM * cell.runs:
+                missed.append(f"{where}: told in {messages / cell.runs:.1%}")
             if width * (1.0 - 3.0 / math.sqrt(2.0 * cell.runs)) > LONGEST:  # the deviation is known to 1/√(2 runs)
                 missed.append(f"{where}: {width:.2f} times as long as need be")
     return missed
 
 
-def tables(found: Sequence[Cell]) -> str:
+def tables(result: Sequence[Cell]) -> str:
     """Coverage in percent, as Markdown; one row for a problem and a method, one column for a number and trials."""
-    sizes = sorted({_asked(cell.trials) for cell in found})
-    runs = {size: min(cell.runs for cell in found if _asked(cell.trials) == size) for size in sizes}
+    sizes = sorted({_asked(cell.trials) for cell in result})
+    runs = {size: min(cell.runs for cell in result if _asked(cell.trials) == size) for size in sizes}
     parts = []
     for number, statistic in enumerate(STATISTICS):
         lines = [f"| {statistic} of | sampling | " + " | ".join(f"{size:,}" for size in sizes) + " |"]
         lines.append("|---|---|" + "---:|" * len(sizes))
         for problem in PROBLEMS:
             for method in SAMPLING:
-                row = {_asked(c.trials): c for c in found if (c.problem, c.method) == (problem, method)}
+                row = {_asked(c.trials): c for c in result if (c.problem, c.method) == (problem, method)}
                 shown = [_shown(row[size], number) if size in row else "" for size in sizes]
                 lines.append(f"| {problem} | {METHODS[method].name} | " + " | ".join(shown) + " |")
         parts.append("\n".join(lines))
     made = ", ".join(f"{count:,} of {size:,} trials" for size, count in runs.items())
-    return "\n\n".join([f"Runs: {made}. {_silent_text(found)}", *parts])
+    return "\n\n".join([f"Runs: {made}. {_silent_text(result)}", *parts])
 
 
-def _silent_text(found: Sequence[Cell]) -> str:
+def _silent_text(result: Sequence[Cell]) -> str:
     """The number of each length that is missed most often without a notice: of so many, chance makes one the worst."""
     worst = []
-    for size in sorted({_asked(cell.trials) for cell in found}):
-        numbers = [(cell, n) for cell in found if _asked(cell.trials) == size for n in range(len(cell.silent))]
+    for size in sorted({_asked(cell.trials) for cell in result}):
+        numbers = [(cell, n) for cell in result if _asked(cell.trials) == size for n in range(len(cell.silent))]
         cell, n = max(numbers, key=lambda each: each[0].silent[each[1]] / each[0].runs)
         share = cell.silent[n] / cell.runs
         error = math.sqrt(share * (1.0 - share) / cell.runs)
@@ -250,8 +250,8 @@ def _asked(trials: int) -> int:
 
 def _shown(cell: Cell, number: int) -> str:
     """Coverage, with an n where most runs have a notice, or the share of them that have one, and the width."""
-    told = cell.told[number] / cell.runs
-    mark = "" if told < 0.005 else f", n {100.0 * told:.0f}"
+    messages = cell.told[number] / cell.runs
+    mark = "" if messages < 0.005 else f", n {100.0 * messages:.0f}"
     width = f" ({cell.width[number]:.2f}{mark})" if cell.width[number] else f" (–{mark})"
     return f"{100.0 * cell.hits[number] / cell.runs:.1f}{width}"
 
@@ -271,18 +271,18 @@ def _path(work: Path, method: str, trials: int, first: int) -> Path:
 
 
 def _collected(work: Path) -> list[Cell]:
-    found = []
+    result = []
     for trials in TRIALS:
         for method in SAMPLING:
             if paths := sorted(work.glob(f"{method}-{trials}-*.npy")):
-                found += cells(method, trials, np.concatenate([np.load(path) for path in paths], axis=1))
-    return found
+                result += cells(method, trials, np.concatenate([np.load(path) for path in paths], axis=1))
+    return result
 
 
-def _written(found: Sequence[Cell], results: Path, page: Path) -> None:
-    text: dict[str, Any] = {"statistics": STATISTICS, "cells": found}
+def _written(result: Sequence[Cell], results: Path, page: Path) -> None:
+    text: dict[str, Any] = {"statistics": STATISTICS, "cells": result}
     results.write_text(json.dumps(text, ensure_ascii=False).replace('["', '\n["') + "\n", encoding="utf-8")
-    page.write_text(placed(page.read_text(encoding="utf-8"), "tail-coverage", tables(found)), encoding="utf-8")
+    page.write_text(placed(page.read_text(encoding="utf-8"), "tail-coverage", tables(result)), encoding="utf-8")
 
 
 def main() -> None:
@@ -302,13 +302,13 @@ def main() -> None:
         if time.monotonic() > end:
             break
         if not path.exists():
-            found = measure(method, trials, seeds)
+            result = measure(method, trials, seeds)
             with path.with_suffix(".part").open("wb") as file:
-                np.save(file, found)
+                np.save(file, result)
             path.with_suffix(".part").rename(path)
-    found = _collected(given.work)
-    _written(found, given.results, given.page)
-    missed = faults(found)
+    result = _collected(given.work)
+    _written(result, given.results, given.page)
+    missed = faults(result)
     print("\n".join(missed) or "every cell meets the bar")
     sys.exit(1 if missed else 0)
 

@@ -60,8 +60,8 @@ class Problem:
         low, high = self.support
         if self.cdf(low) >= p or self.cdf(high) < p:
             return low if self.cdf(low) >= p else high
-        found = optimize.bisect(lambda x: -1.0 if self.cdf(x) < p else 1.0, low, high, xtol=1e-12)
-        return float(np.round(found)) if abs(found - np.round(found)) < 1e-9 else float(found)
+        result = optimize.bisect(lambda x: -1.0 if self.cdf(x) < p else 1.0, low, high, xtol=1e-12)
+        return float(np.round(result)) if abs(result - np.round(result)) < 1e-9 else float(result)
 
 
 def _lognormal(sigma: float) -> Problem:

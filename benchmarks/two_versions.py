@@ -76,9 +76,9 @@ def ratio(
     """Measure two commands in turn: the medians of both, and the median of the ratios of each pair."""
     for each in (new, old):
         processor_time(*each, folder)
-    found = [(processor_time(*new, folder), processor_time(*old, folder)) for _ in range(pairs)]
-    first, second = (statistics.median(times) for times in zip(*found, strict=True))
-    return first, second, statistics.median(a / b for a, b in found)
+    result = [(processor_time(*new, folder), processor_time(*old, folder)) for _ in range(pairs)]
+    first, second = (statistics.median(times) for times in zip(*result, strict=True))
+    return first, second, statistics.median(a / b for a, b in result)
 
 
 def main(arguments: Sequence[str] | None = None) -> None:

@@ -43,47 +43,47 @@ THEORY_TRIALS, THEORY_RUNS = (8_192, 32_768, 131_072), 200
 _SEED = 5_000_000
 
 
-def theory_runs(model: CompiledModel, found: Study) -> list[Runs]:
+def theory_runs(model: CompiledModel, result: Study) -> list[Runs]:
     """Many runs by Monte Carlo of a few lengths, which theory is held against."""
     return [
         runs_of(
             trials,
             [MONTE_CARLO.run(model, trials, _SEED + trials + run) for run in range(THEORY_RUNS)],
-            found.reference,
+            result.reference,
         )
         for trials in THEORY_TRIALS
     ]
 
 
-def theory_rows(found: Study, lengths: Sequence[Runs]) -> list[tuple[str, ...]]:
+def theory_rows(result: Study, lengths: Sequence[Runs]) -> list[tuple[str, ...]]:
     """Monte Carlo's errors over those that theory says, one row a run length and forecast, ± their standard errors."""
     return [
-        (f"{runs.budget:,}", forecast.name, *(_ratio(found, runs, forecast.name, each) for each in STATISTICS))
+        (f"{runs.budget:,}", forecast.name, *(_ratio(result, runs, forecast.name, each) for each in STATISTICS))
         for runs in lengths
-        for forecast in found.model.forecasts
+        for forecast in result.model.forecasts
     ]
 
 
-def _ratio(found: Study, runs: Runs, forecast: str, statistic: str) -> str:
+def _ratio(result: Study, runs: Runs, forecast: str, statistic: str) -> str:
     error = runs.errors[forecast, statistic]
-    theory = found.reference.theory(forecast, statistic, runs.budget)
+    theory = result.reference.theory(forecast, statistic, runs.budget)
     return f"{error.value / theory:.2f} ± {error.error / theory:.2f}"
 
 
-def filled(page: str, found: Study, lengths: Sequence[Runs]) -> str:
+def filled(page: str, result: Study, lengths: Sequence[Runs]) -> str:
     """The page with its tables and words made anew."""
     made = {
-        "reference": methods_tables.reference_table(found),
-        "bounds": methods_tables.bounds_table(found),
-        "errors": methods_tables.error_table(found),
-        "forecasts": methods_tables.forecast_table(found),
-        "lengths": methods_tables.length_table(found),
+        "reference": methods_tables.reference_table(result),
+        "bounds": methods_tables.bounds_table(result),
+        "errors": methods_tables.error_table(result),
+        "forecasts": methods_tables.forecast_table(result),
+        "lengths": methods_tables.length_table(result),
     }
     for name, table in made.items():
         page = placed(page, name, f"*{table.title}*\n\n{_markdown(table.heads, table.rows, min(table.at_right))}")
     headings = ("Trials", "Forecast", *STATISTICS.values())
-    page = placed(page, "theory", _markdown(headings, theory_rows(found, lengths), 2))
-    words = "\n\n".join(f"> {said}" if said else "" for said in recommendation(found))
+    page = placed(page, "theory", _markdown(headings, theory_rows(result, lengths), 2))
+    words = "\n\n".join(f"> {message}" if message else "" for message in recommendation(result))
     return placed(page, "words", words.replace("\n\n>", "\n>\n>"))
 
 
@@ -104,23 +104,23 @@ def main(given: Sequence[str] | None = None) -> None:
     """Measure and write."""
     asked = _arguments(given)
     model = load(BOOK)
-    found = study(
+    result = study(
         model,
         reference_trials=asked.reference_trials,
         trials=asked.trials,
         replicates=asked.replicates,
         tell=lambda what: print(what, file=sys.stderr, flush=True),
     )
-    write(found, theory_runs(model, found))
+    write(result, theory_runs(model, result))
 
 
-def write(found: Study, lengths: Sequence[Runs]) -> None:
+def write(result: Study, lengths: Sequence[Runs]) -> None:
     """The record, the page and the picture, and whether theory holds."""
-    record: dict[str, Any] = {"machine": describe(), "found": study_json(found)}
+    record: dict[str, Any] = {"machine": describe(), "found": study_json(result)}
     RESULTS.write_text(json.dumps(record, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), found, lengths), encoding="utf-8")
-    PICTURE.write_bytes(png(found))
-    ratios = [float(cell.partition(" ")[0]) for row in theory_rows(found, lengths) for cell in row[2:]]
+    PAGE.write_text(filled(PAGE.read_text(encoding="utf-8"), result, lengths), encoding="utf-8")
+    PICTURE.write_bytes(png(result))
+    ratios = [float(cell.partition(" ")[0]) for row in theory_rows(result, lengths) for cell in row[2:]]
     print(
         f"Monte Carlo's errors are {min(ratios):.2f} to {max(ratios):.2f} of theory's, {np.median(ratios):.2f} mostly"
     )

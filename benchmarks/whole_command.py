@@ -144,16 +144,16 @@ def measure(rounds: int = ROUNDS) -> dict[str, Any]:
     with tempfile.TemporaryDirectory() as folder:
         recording, theirs, ours = (Path(folder) / name for name in ("calls", "baseline.xlsx", "results.xlsx"))
         calls = int(seconds(__file__, "--record", recording)[1])
-        found: dict[str, Any] = {"trials": TRIALS, "calls": calls, "xlmc": [], "baseline": [], "imports": []}
+        result: dict[str, Any] = {"trials": TRIALS, "calls": calls, "xlmc": [], "baseline": [], "imports": []}
         command = "-m", "xlmc", "simulate", CASE_STUDY, "-n", TRIALS, "--quiet", "-o", ours
         for _ in range(rounds):
-            found["xlmc"].append(seconds(*command)[0])
+            result["xlmc"].append(seconds(*command)[0])
             whole, reading = seconds(__file__, "--baseline", recording, theirs)
-            found["baseline"].append(whole - float(reading))
-            found["imports"].append(seconds("-c", "import numpy, openpyxl, xlsxwriter")[0])
-        found["sizes"] = [ours.stat().st_size, theirs.stat().st_size]
-    found["ratio"] = statistics.median(a / b for a, b in zip(found["xlmc"], found["baseline"], strict=True))
-    return found
+            result["baseline"].append(whole - float(reading))
+            result["imports"].append(seconds("-c", "import numpy, openpyxl, xlsxwriter")[0])
+        result["sizes"] = [ours.stat().st_size, theirs.stat().st_size]
+    result["ratio"] = statistics.median(a / b for a, b in zip(result["xlmc"], result["baseline"], strict=True))
+    return result
 
 
 def main() -> None:
@@ -169,11 +169,11 @@ def main() -> None:
     if chosen.baseline:
         print(baseline(*chosen.baseline))
         return
-    found = measure(chosen.rounds)
-    print(f"xlmc simulate, {TRIALS:,} trials, workbook written: {statistics.median(found['xlmc']):.3f} s")
-    print(f"baseline, the same sheets from recorded calls:  {statistics.median(found['baseline']):.3f} s")
-    print(f"  of it importing the three libraries:          {statistics.median(found['imports']):.3f} s")
-    print(f"ratio: {found['ratio']:.2f}")
+    result = measure(chosen.rounds)
+    print(f"xlmc simulate, {TRIALS:,} trials, workbook written: {statistics.median(result['xlmc']):.3f} s")
+    print(f"baseline, the same sheets from recorded calls:  {statistics.median(result['baseline']):.3f} s")
+    print(f"  of it importing the three libraries:          {statistics.median(result['imports']):.3f} s")
+    print(f"ratio: {result['ratio']:.2f}")
 
 
 if __name__ == "__main__":

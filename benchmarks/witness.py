@@ -76,13 +76,13 @@ def witnessed(path: Path, *, parts: bool = True, runs: Iterable[tuple[str, str]]
         runs: engine and sampling method of each.
     """
     model = load(path)
-    found: Json = {}
+    result: Json = {}
     for engine, sampling in runs:
         run = run_model(model, RunOptions.of(trials=TRIALS, seed=SEED, engine=engine, sampling=sampling))
-        found[f"{engine} {sampling}"] = _of_run(run)
+        result[f"{engine} {sampling}"] = _of_run(run)
         if parts and (engine, sampling) == ("numpy", "mc"):
-            found["parts"] = dict(_parts(run))
-    return found
+            result["parts"] = dict(_parts(run))
+    return result
 
 
 def _of_run(run: RunResult) -> Json:
@@ -91,11 +91,11 @@ def _of_run(run: RunResult) -> Json:
     for name, values in columns.items():
         trials.update(name.encode())
         trials.update(np.ascontiguousarray(values).tobytes())
-    told = {key: part for key, part in document(run).items() if key not in _OF_THE_RUN}
+    messages = {key: part for key, part in document(run).items() if key not in _OF_THE_RUN}
     return {
         "accepted": run.accepted,
         "trials": trials.hexdigest()[:_DIGITS],
-        "statistics": _digest(json.dumps(told, sort_keys=True).encode()),
+        "statistics": _digest(json.dumps(messages, sort_keys=True).encode()),
         "numbers": {name: _numbers(values) for name, values in run.forecasts.items()},
     }
 
@@ -108,8 +108,8 @@ def _numbers(values: np.ndarray[Any, Any]) -> list[float | None]:
     """Mean, standard deviation, least, median and largest; None for each that is no number."""
     if not values.size:
         return []
-    found = [values.mean(), values.std(), values.min(), np.median(values), values.max()]
-    return [float(number) if math.isfinite(number) else None for number in found]
+    result = [values.mean(), values.std(), values.min(), np.median(values), values.max()]
+    return [float(number) if math.isfinite(number) else None for number in result]
 
 
 def _parts(run: RunResult) -> Iterator[tuple[str, str]]:
@@ -125,19 +125,19 @@ def _parts(run: RunResult) -> Iterator[tuple[str, str]]:
                         yield name, _digest(content)
 
 
-def _text(found: Json) -> str:
+def _text(result: Json) -> str:
     """A line for each run, so that a comparison of two versions shows which."""
     lines = [
         f"{json.dumps(name)}: {{\n" + ",\n".join(f" {json.dumps(run)}: {json.dumps(of)}" for run, of in book.items())
-        for name, book in found.items()
+        for name, book in result.items()
     ]
     return f'{{"made on": {json.dumps(features())},\n"books": {{\n' + "},\n".join(lines) + "}}}\n"
 
 
 def recorded() -> Json:
     """What was recorded last."""
-    found: Json = json.loads(RECORDED.read_text(encoding="utf-8"))
-    return found
+    result: Json = json.loads(RECORDED.read_text(encoding="utf-8"))
+    return result
 
 
 def differences(before: Json, after: Json, *, bits: bool) -> Iterator[str]:
@@ -182,26 +182,30 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("--record", action="store_true", help="write what is found, and compare nothing")
     parser.add_argument("--books", nargs="+", default=(), metavar="NAME", help="names without .xlsx; all by default")
     given = parser.parse_args(arguments)
-    found = {}
+    result = {}
     for name, path in books(given.books).items():
-        found[name] = witnessed(path)
+        result[name] = witnessed(path)
         print(name, "done", file=sys.stderr, flush=True)
     if given.record:
         kept = recorded()["books"] if given.books and RECORDED.exists() else {}
-        RECORDED.write_text(_text({**kept, **found}), encoding="utf-8")
+        RECORDED.write_text(_text({**kept, **result}), encoding="utf-8")
         return 0
     before = recorded()
     bits = before["made on"] == features()
     known = before["books"]
-    told = [
+    messages = [
         f"{name}: {what}"
-        for name in found
+        for name in result
         if name in known
-        for what in differences(known[name], found[name], bits=bits)
+        for what in differences(known[name], result[name], bits=bits)
     ]
-    told += [f"{name}: is not recorded yet" for name in found if name not in known]
-    print("\n".join(told) if told else f"{len(found)} books give the same {'bits' if bits else 'numbers'} as recorded")
-    return int(bool(told))
+    messages += [f"{name}: is not recorded yet" for name in result if name not in known]
+    print(
+        "\n".join(messages)
+        if messages
+        else f"{len(result)} books give the same {'bits' if bits else 'numbers'} as recorded"
+    )
+    return int(bool(messages))
 
 
 if __name__ == "__main__":

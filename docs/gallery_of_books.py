@@ -83,14 +83,14 @@ def _card(pages: Path, folder: Path, book: str, title: str) -> str:
             f":img-top: {os.path.relpath(picture, pages).replace(os.sep, '/')}",
             f":img-alt: Histogram of {shown}",
         )
-    said = next((each for each in run.sentences if shown is None or each.startswith(f"{shown}:")), run.sentences[0])
+    message = next((each for each in run.sentences if shown is None or each.startswith(f"{shown}:")), run.sentences[0])
     link = os.path.relpath(ROOT / book, pages).replace(os.sep, "/")
     return "\n".join(
         (
             f":::{{grid-item-card}} {title}",
             *image,
             "",
-            f"{said}.",
+            f"{message}.",
             "",
             f"{len(run.model.live)} ranges, {len(run.model.filters)} filters; {{download}}`{Path(book).name} <{link}>`",
             ":::",

@@ -196,7 +196,7 @@ def page() -> str:
         "This page is written by `python docs/list_functions.py`.",
         "",
     ]
-    lines += [f"**{letter}** {' '.join(f'`{name}`' for name in found)}\n" for letter, found in letters.items()]
+    lines += [f"**{letter}** {' '.join(f'`{name}`' for name in result)}\n" for letter, result in letters.items()]
     return "\n".join([*lines, RANGES, DIGITS, DIFFERENCES, LIMITS])
 
 

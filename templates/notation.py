@@ -50,12 +50,12 @@ def printed(formula: str, notation: Mapping[str, str]) -> str:
 
 def _calls(formula: str) -> str:
     """The formula with those functions that mathematics writes otherwise written so."""
-    found = _CALL.search(formula)
-    if found is None:
+    result = _CALL.search(formula)
+    if result is None:
         return formula
-    arguments, end = _arguments(formula, found.end())
-    name, rest = found[1], _calls(formula[end:])
-    return formula[: found.start()] + _AS_MATHEMATICS.get(name, _angle)(name, [*map(_calls, arguments)]) + rest
+    arguments, end = _arguments(formula, result.end())
+    name, rest = result[1], _calls(formula[end:])
+    return formula[: result.start()] + _AS_MATHEMATICS.get(name, _angle)(name, [*map(_calls, arguments)]) + rest
 
 
 def _arguments(formula: str, start: int) -> tuple[list[str], int]:
@@ -88,8 +88,8 @@ _AS_MATHEMATICS: Mapping[str, Callable[[str, list[str]], str]] = {
 
 
 def _word(word: str, notation: Mapping[str, str], *, alone: bool) -> str:
-    found = notation.get(word) or _FUNCTIONS.get(word) or (word if word in notation else word.lower())
-    return found if alone or not _is_expression(found) else f"({found})"
+    result = notation.get(word) or _FUNCTIONS.get(word) or (word if word in notation else word.lower())
+    return result if alone or not _is_expression(result) else f"({result})"
 
 
 def _is_expression(notation: str) -> bool:

@@ -62,8 +62,8 @@ def shown_label(text: str, vehicles: Sequence[str]) -> str:
 def label_formula(text: str) -> str:
     """`«1» delta-V` -> `vehicle_1&" delta-V"`: a label with the name of a vehicle as a formula, without `=`."""
     parts = _NAME.split(text)
-    said = [_cell(part) if index % 2 else _quoted(part) for index, part in enumerate(parts)]
-    return "&".join(part for part in said if part)
+    message = [_cell(part) if index % 2 else _quoted(part) for index, part in enumerate(parts)]
+    return "&".join(part for part in message if part)
 
 
 def _cell(name: str) -> str:

@@ -74,9 +74,9 @@ def test_the_four_numbers_of_each_forecast(runs, trials, name):
     result = run[name]
     assert near(result.mean, mean, mean_error)
     assert near(result.standard_deviation, deviation, SD_ERROR)
-    found = result.central(0.51)
-    assert near(found[0], low, QUANTILE_ERROR)
-    assert near(found[1], high, QUANTILE_ERROR)
+    results = result.central(0.51)
+    assert near(results[0], low, QUANTILE_ERROR)
+    assert near(results[1], high, QUANTILE_ERROR)
 
 
 @pytest.mark.parametrize("trials", SIZES)
@@ -85,8 +85,8 @@ def test_the_papers_own_table(runs, trials, name):
     """The paper printed one decimal from 3481 trials: half a unit of rounding, and 4 of its own standard errors."""
     result = runs[trials][name]
     paper_error = (result.values.size / 3481) ** 0.5
-    found = (result.mean, result.standard_deviation, *result.central(0.51))
-    for estimate, printed in zip(found, TABLE_2[name], strict=True):
+    results = (result.mean, result.standard_deviation, *result.central(0.51))
+    for estimate, printed in zip(results, TABLE_2[name], strict=True):
         assert abs(estimate.value - printed) <= 0.05 + 4 * estimate.error * (1 + paper_error**2) ** 0.5
 
 
@@ -121,5 +121,5 @@ def test_verify_finds_every_cell_right():
     from xlmc.analysis.studies.verify import Status, verify
     from xlmc.excel.workbook.reader import read_workbook
 
-    found = verify(read_workbook(BOOK))
-    assert found.count(Status.MATCHED) == len(found.cells) > 70
+    result = verify(read_workbook(BOOK))
+    assert result.count(Status.MATCHED) == len(result.cells) > 70

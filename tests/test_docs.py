@@ -75,9 +75,9 @@ def test_every_function_is_documented():
 def test_the_readme_has_a_line_for_each_command():
     block = re.search(r"^```sh\n(xlmc new.*?)^```", README, re.DOTALL | re.MULTILINE)
     assert block is not None
-    found = [re.fullmatch(r"xlmc ([a-z]+)\b[^#]*? +# [^#]+", line) for line in block[1].splitlines()]
-    assert all(found)
-    assert {line[1] for line in found} == set(xlmc.commands) - {
+    result = [re.fullmatch(r"xlmc ([a-z]+)\b[^#]*? +# [^#]+", line) for line in block[1].splitlines()]
+    assert all(result)
+    assert {line[1] for line in result} == set(xlmc.commands) - {
         "report",
         "scenario",
         "help",

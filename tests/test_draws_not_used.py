@@ -32,11 +32,11 @@ def run(tmp_path_factory):
 
 
 def test_influences(run):
-    found = {each.assumption: each.explained.value for each in sensitivities(run)["y"].influences}
+    result = {each.assumption: each.explained.value for each in sensitivities(run)["y"].influences}
     # Of the variance 15.16 the event explains 0.3 * 0.7 * 6²; a severity says whether it happens, and explains 11.16.
-    assert found["S!A1#1"] == pytest.approx(7.56 / 15.16, abs=0.05)
-    assert found["S!A2#1"] == pytest.approx(11.16 / 15.16, abs=0.05)
-    assert found["S!A3#1"] == pytest.approx(4 / 15.16, abs=0.05)
+    assert result["S!A1#1"] == pytest.approx(7.56 / 15.16, abs=0.05)
+    assert result["S!A2#1"] == pytest.approx(11.16 / 15.16, abs=0.05)
+    assert result["S!A3#1"] == pytest.approx(4 / 15.16, abs=0.05)
 
 
 def test_files(run, tmp_path):

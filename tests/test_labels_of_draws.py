@@ -60,10 +60,10 @@ def path(tmp_path):
 
 
 def test_draws_have_the_labels_beside_them_and_their_units(path):
-    found = {a.name: a for a in load_model(path).assumptions}
-    assert {name: a.names[-1] for name, a in found.items()} == NAMES
-    assert found["Price"].units == "€"
-    assert str(found["Price"].cell) == "Inputs!B1#1"
+    result = {a.name: a for a in load_model(path).assumptions}
+    assert {name: a.names[-1] for name, a in result.items()} == NAMES
+    assert result["Price"].units == "€"
+    assert str(result["Price"].cell) == "Inputs!B1#1"
     assert [f.name for f in load_model(path).forecasts] == ["Profit"]
 
 
@@ -90,15 +90,15 @@ def test_rows_and_options_understand_both_names(tmp_path):
     for name in ("Price", "Inputs!B1#1", "inputs!b1#1"):
         held = applied(load_model(write(tmp_path / "plain.xlsx")), [Frozen(name, 50.0)])
         assert [a.name for a in held.assumptions if a.frozen] == ["Price"]
-    found = screen(load_model(write(tmp_path / "plain.xlsx")), sets=["Inputs!B1#1,Units sold #2"], trials=200)
-    assert [each.names for each in found.sets] == [("Price", "Units sold #2")]
+    result = screen(load_model(write(tmp_path / "plain.xlsx")), sets=["Inputs!B1#1,Units sold #2"], trials=200)
+    assert [each.names for each in result.sets] == [("Price", "Units sold #2")]
     point = dict.fromkeys(NAMES.values(), 0.5)
     assert load(path).function(point)["Profit"] == pytest.approx((0.5 + 0.5) * (1000 + 0.25) * 0.5)
 
 
 def test_a_converted_book_draws_the_same_under_the_labels(path, tmp_path):
-    found = CliRunner().invoke(xlmc, ["convert", str(path), "-o", str(tmp_path / "c.xlsx")])
-    assert found.exit_code == 0, found.output
+    result = CliRunner().invoke(xlmc, ["convert", str(path), "-o", str(tmp_path / "c.xlsx")])
+    assert result.exit_code == 0, result.output
     before, after = load(path).simulate(500), load(tmp_path / "c.xlsx").simulate(500)
     assert {*after.inputs} == {*NAMES}
     for name in NAMES:
@@ -113,9 +113,9 @@ def test_two_rows_may_not_share_a_stream(tmp_path):
     tables = {"xlmc_assumptions": rows, "xlmc_forecasts": [["Name", "Value"], ["y", "=B2+B3"]]}
     add_tables(sheet, tables)
     book.save(tmp_path / "book.xlsx")
-    found = CliRunner().invoke(xlmc, ["check", str(tmp_path / "book.xlsx")])
-    assert found.exit_code == 2
-    assert "is drawn by the stream 'X', too" in " ".join(found.output.split())
+    result = CliRunner().invoke(xlmc, ["check", str(tmp_path / "book.xlsx")])
+    assert result.exit_code == 2
+    assert "is drawn by the stream 'X', too" in " ".join(result.output.split())
 
 
 def test_a_row_may_keep_its_stream_under_another_name(tmp_path):
@@ -138,5 +138,5 @@ def test_outputs_have_the_labels(path, tmp_path):
     assert {*NAMES, "Profit"} < {*heads}
     run.save(tmp_path / "out.xlsx")
     sheet = openpyxl.load_workbook(tmp_path / "out.xlsx")["Assumptions"]
-    said = {cell.value for row in sheet.iter_rows() for cell in row}
-    assert {"Price (€)", "Inputs!B1#1", "Units sold #2", "Inputs!B2#2"} <= said
+    message = {cell.value for row in sheet.iter_rows() for cell in row}
+    assert {"Price (€)", "Inputs!B1#1", "Units sold #2", "Inputs!B2#2"} <= message

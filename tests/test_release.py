@@ -38,9 +38,9 @@ def test_what_is_not_ready_is_named(release, tmp_path, monkeypatch):
     long = " ".join(["word"] * 20)
     (tmp_path / "CHANGELOG.md").write_text(f"## 1.0.0\n\n- {long}\n", encoding="utf-8")
     monkeypatch.setattr(release, "ROOT", tmp_path)
-    said = "\n".join(release.faults())
+    message = "\n".join(release.faults())
     for part in ("does not begin with 2.0.0", "1.0.0 no date", "15 words", "HOST.invalid", "51.added.md"):
-        assert part in said
+        assert part in message
 
 
 def test_workflows_and_nox_name_the_same_sessions():

@@ -51,13 +51,13 @@ def _opens_text(call: ast.Call) -> bool:
 
 def test_text_files_are_opened_as_utf_8():
     assert len(SOURCES) > 800
-    found = []
+    result = []
     for path in SOURCES:
         text = path.read_text(encoding="utf-8")
         if OPENS.search(text):
             calls = silent_calls(ast.parse(text))
-            found += [f"{path.relative_to(ROOT)}:{call.lineno}: {ast.unparse(call)}" for call in calls]
-    assert found == []
+            result += [f"{path.relative_to(ROOT)}:{call.lineno}: {ast.unparse(call)}" for call in calls]
+    assert result == []
 
 
 @pytest.mark.parametrize(

@@ -44,8 +44,8 @@ class FormulasModel:
         return [self._trial(row) for row in islice(cycle(self._rows), trials)]
 
     def _trial(self, row: list[float]) -> list[Any]:
-        found = self._call(*row)
-        return [_value(ranges) for ranges in ([found] if self._single else found)]
+        result = self._call(*row)
+        return [_value(ranges) for ranges in ([result] if self._single else result)]
 
 
 def prepare(task: Task) -> FormulasModel:

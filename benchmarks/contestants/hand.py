@@ -42,10 +42,10 @@ class Hand:
 
     def answers(self, rows: list[list[float]]) -> list[list[Any]]:
         """The check trials are accepted ones, so that every row has its forecasts."""
-        found = self._evaluate(np.array(rows).T.copy())
-        if found.shape[1] != len(rows):
-            return [[None] * found.shape[0] for _ in rows]
-        return [list(row) for row in found.T.tolist()]
+        result = self._evaluate(np.array(rows).T.copy())
+        if result.shape[1] != len(rows):
+            return [[None] * result.shape[0] for _ in rows]
+        return [list(row) for row in result.T.tolist()]
 
     def settle(self) -> None:
         """Compile what compiles when it is first called."""

@@ -61,10 +61,10 @@ def prepare(task: Task) -> Xlmc:
 
 
 def _versions(*packages: str) -> dict[str, str]:
-    found = {}
+    result = {}
     for package in packages:
         try:
-            found[package] = version(package)
+            result[package] = version(package)
         except PackageNotFoundError:
             continue
-    return found
+    return result

@@ -62,7 +62,7 @@ def cell(row: int, column: int, value: object = None, formula: str | None = None
 
 def _text(text: str) -> str:
     """Text as Excel writes it into a file: what XML cannot hold as `_x0007_`."""
-    return escape(_CONTROL.sub(lambda found: f"_x{ord(found[0]):04X}_", text))
+    return escape(_CONTROL.sub(lambda result: f"_x{ord(result[0]):04X}_", text))
 
 
 def parts_of(sheets: Mapping[str, Sheet], names: Mapping[str, str] | None = None) -> dict[str, bytes]:

@@ -45,7 +45,7 @@ class Summary:
     reached: Counter[Reached] = field(default_factory=Counter)
     slowest: tuple[float, int] = (0.0, -1)
     largest: tuple[int, int] = (0, -1)
-    found: dict[str, Found] = field(default_factory=dict)
+    faults: dict[str, Found] = field(default_factory=dict)
 
     def add(self, outcome: Outcome) -> None:
         """Count one outcome."""
@@ -55,14 +55,14 @@ class Summary:
         self.slowest = max(self.slowest, (outcome.seconds, outcome.number))
         self.largest = max(self.largest, (outcome.memory, outcome.number))
         if outcome.finding is not None:
-            self.found.setdefault(outcome.finding.key, Found(outcome)).count += 1
+            self.faults.setdefault(outcome.finding.key, Found(outcome)).count += 1
 
     def line(self) -> str:
         """For the table at the end."""
         ran, refused = self.reached[Reached.RAN], self.reached[Reached.REFUSED]
-        together = sum(found.count for found in self.found.values())
+        together = sum(result.count for result in self.faults.values())
         return (
-            f"{self.kind:<10}{self.inputs:>10,}{ran:>10,}{refused:>10,}{together:>10,}{len(self.found):>7,}"
+            f"{self.kind:<10}{self.inputs:>10,}{ran:>10,}{refused:>10,}{together:>10,}{len(self.faults):>7,}"
             f"{self.slowest[0]:>9.2f} s (#{self.slowest[1]}){self.largest[0] >> 20:>7,} MB (#{self.largest[1]})"
         )
 
@@ -76,7 +76,7 @@ def campaign(
     seed: int,
     numbers: Iterable[int],
     until: float = float("inf"),
-    found: Callable[[Outcome], None] = lambda _: None,
+    result: Callable[[Outcome], None] = lambda _: None,
 ) -> Summary:
     """Run inputs until the numbers or the time (`time.monotonic`) are used up.
 
@@ -86,7 +86,7 @@ def campaign(
         seed: of the campaign.
         numbers: of the inputs.
         until: when to stop.
-        found: told of every outcome with a finding.
+        result: told of every outcome with a finding.
     """
     summary, left = Summary(kind), iter(numbers)
     while time.monotonic() < until and (batch := list(itertools.islice(left, _STARTING_ANEW))):
@@ -95,7 +95,7 @@ def campaign(
                 batch = batch[batch.index(outcome.number) + 1 :]
                 summary.add(outcome)
                 if outcome.finding is not None:
-                    found(outcome)
+                    result(outcome)
     return summary
 
 
@@ -116,13 +116,13 @@ def _children(kind: str, how: Kind, seed: int, numbers: list[int], until: float)
                     yield _lost(how, kind, seed, number, "takes too long", spent)
                     return
                 continue
-            told = ours.recv()
-            if told is None:
+            messages = ours.recv()
+            if messages is None:
                 return
-            if isinstance(told, int):
-                number, began, wall = told, _processor_time(child.pid), time.monotonic()
+            if isinstance(messages, int):
+                number, began, wall = messages, _processor_time(child.pid), time.monotonic()
             else:
-                yield told
+                yield messages
     except (EOFError, ConnectionResetError):
         child.join()
         yield _lost(how, kind, seed, number, f"died with {child.exitcode}", _processor_time(child.pid) - began)

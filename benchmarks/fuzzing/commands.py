@@ -44,14 +44,14 @@ def _run(*arguments: str) -> int:
             code: object = 0
         except SystemExit as ended:
             code = ended.code or 0
-        printed, said = (_text(stream) for stream in (out, err))
+        printed, message = (_text(stream) for stream in (out, err))
     if code not in _CODES:
         raise Disagreement(f"xlmc {arguments[0]}, exit code: {code!r}")
-    if code == 2 and not any(re.match(r"(xlmc|problem): \S", line) for line in said.splitlines()):
-        raise Disagreement(f"xlmc {arguments[0]}, no message: {said[:300]!r}")
-    if "Traceback (most" in said:
-        raise Disagreement(f"xlmc {arguments[0]}, a traceback: {said[:300]!r}")
-    for text in (printed, said):
+    if code == 2 and not any(re.match(r"(xlmc|problem): \S", line) for line in message.splitlines()):
+        raise Disagreement(f"xlmc {arguments[0]}, no message: {message[:300]!r}")
+    if "Traceback (most" in message:
+        raise Disagreement(f"xlmc {arguments[0]}, a traceback: {message[:300]!r}")
+    for text in (printed, message):
         steering = next((one for one in text if one not in "\n" and unicodedata.category(one) in ("Cc", "Cs")), None)
         if steering is not None:
             at = text.index(steering)

@@ -130,13 +130,13 @@ _Edit = Callable[[random.Random, dict[str, bytes]], str]
 def _replaced(rng: random.Random, parts: dict[str, bytes], part: str, pattern: str, new: Callable[[str], str]) -> str:
     """One match of the pattern in a part, chosen at random, becomes another text."""
     text = parts[part].decode("utf-8", "surrogatepass")
-    found = [match.span() for match in re.finditer(pattern, text)]
-    if not found:
+    result = [match.span() for match in re.finditer(pattern, text)]
+    if not result:
         return "nothing"
-    start, end = rng.choice(found)
-    said = new(text[start:end])
-    parts[part] = f"{text[:start]}{said}{text[end:]}".encode("utf-8", "surrogatepass")
-    return f"{part}: {text[start:end][:60]!r} -> {said[:60]!r}"
+    start, end = rng.choice(result)
+    message = new(text[start:end])
+    parts[part] = f"{text[:start]}{message}{text[end:]}".encode("utf-8", "surrogatepass")
+    return f"{part}: {text[start:end][:60]!r} -> {message[:60]!r}"
 
 
 def _value_of_cell(rng: random.Random, parts: dict[str, bytes]) -> str:
@@ -227,8 +227,8 @@ def _types(rng: random.Random, parts: dict[str, bytes]) -> str:
 
 def _any_xml(part: str) -> _Edit:
     def change(rng: random.Random, parts: dict[str, bytes]) -> str:
-        parts[part], said = changed(rng, parts[part])
-        return f"{part}: {said}"
+        parts[part], message = changed(rng, parts[part])
+        return f"{part}: {message}"
 
     return change
 
@@ -243,15 +243,15 @@ FOCUSES: Final[Mapping[str, tuple[_Edit, _Edit]]] = {
 
 def make(focus: str, rng: random.Random) -> Input:
     """The book with one to four changes in the parts that it is about, or in values of cells."""
-    parts, said = dict(book()), []
+    parts, message = dict(book()), []
     likely, at_random = FOCUSES[focus]
     for _ in range(rng.choice([1, 1, 2, 3, 4])):
         change = rng.choices([likely, _value_of_cell, at_random], [0.6, 0.25, 0.15])[0]
-        said.append(change(rng, parts))
+        message.append(change(rng, parts))
     if focus == "types" and rng.random() < 0.05:
         parts = {name.replace("/", "\\"): content for name, content in parts.items()}
-        said.append("backslashes")
-    return Input("fuzz.xlsx", packed(parts), "; ".join(said), steps_of(rng, _STEPS))
+        message.append("backslashes")
+    return Input("fuzz.xlsx", packed(parts), "; ".join(message), steps_of(rng, _STEPS))
 
 
 def run(given: Input, folder: Path) -> Reached:
@@ -347,16 +347,16 @@ def _formats(data: bytes) -> dict[str, dict[str, str]]:
     root = _parsed(xml)
     codes = {each.get("numFmtId"): each.get("formatCode", "") for each in root.iterfind("{*}numFmts//{*}numFmt")}
     entry_numbers = [_number(entry) for entry in root.find("{*}cellXfs") or ()]
-    found = {}
+    result = {}
     for sheet in _parsed(entries["xl/workbook.xml"]).iterfind("{*}sheets/{*}sheet"):
         pointer = next(value for key, value in sheet.items() if key.endswith("}id"))
         cells = _parsed(entries[_place(targets[pointer][1])]).iterfind(".//{*}c[@s]")
         styles_of = {at: s for each in cells if (at := each.get("r", "")) and (s := each.get("s", "")).isdecimal()}
         of = {at: entry_numbers[int(s)] if int(s) < len(entry_numbers) else "0" for at, s in styles_of.items()}
-        found[sheet.get("name", "")] = {
+        result[sheet.get("name", "")] = {
             at: codes.get(number) or _BUILT_IN.get(number, f"built-in {number}") for at, number in of.items()
         }
-    return found
+    return result
 
 
 def _parsed(xml: bytes) -> ElementTree.Element:

@@ -134,11 +134,11 @@ def run(given: Input, folder: Path) -> Reached:
         XlmcError: as xlmc does.
     """
     model = _model(given, "varying")
-    found = run_model(model, RunOptions.of(trials=TRIALS))
+    result = run_model(model, RunOptions.of(trials=TRIALS))
     if "summary" in given.steps:
-        summary_text(summarise(found))
+        summary_text(summarise(result))
     if "jit" in given.steps:
-        _agree("numpy", found, "jit", run_model(model, RunOptions.of(trials=TRIALS, engine="jit")))
+        _agree("numpy", result, "jit", run_model(model, RunOptions.of(trials=TRIALS, engine="jit")))
     if "constants" in given.steps and not _VOLATILE.search(given.said):
         still, frozen = (run_model(_model(given, kind), RunOptions.of(trials=8)) for kind in ("still", "frozen"))
         _agree("varying by nothing", still, "frozen", frozen)
@@ -172,8 +172,8 @@ def _agree(one: str, first: RunResult, other: str, second: RunResult) -> None:
     Raises:
         Disagreement: they did not.
     """
-    faults = [dict(found.faults["y"]) for found in (first, second)]
-    numbers: list[Any] = [np.asarray(found.forecasts["y"]) for found in (first, second)]
+    faults = [dict(result.faults["y"]) for result in (first, second)]
+    numbers: list[Any] = [np.asarray(results.forecasts["y"]) for results in (first, second)]
     if faults[0] != faults[1]:
         raise Disagreement(f"{one}: {faults[0]}, {other}: {faults[1]}")
     same = np.isclose(numbers[0], numbers[1], rtol=1e-9, atol=1e-300, equal_nan=True)

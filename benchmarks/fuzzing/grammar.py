@@ -85,8 +85,8 @@ def _leaf(rng: random.Random) -> str:
 def _number(rng: random.Random) -> str:
     if rng.random() < 0.5:
         return rng.choice(["0", "1", "2", "3", "-1", "0.5", "10", "1.5", "4", "100", "0.05", "12", "39448", "45000"])
-    found = hostile.number(rng)
-    return found if re.fullmatch(r"-?\d+(\.\d+)?([Ee][+-]?\d+)?", found) else "7"
+    result = hostile.number(rng)
+    return result if re.fullmatch(r"-?\d+(\.\d+)?([Ee][+-]?\d+)?", result) else "7"
 
 
 def _text(rng: random.Random) -> str:
@@ -99,8 +99,8 @@ def _text(rng: random.Random) -> str:
 
 def _binary(rng: random.Random, depth: int) -> str:
     left, right = _expression(rng, depth - 1), _expression(rng, depth - 1)
-    found = f"{left}{rng.choices(_OPERATORS, _WEIGHTS)[0]}{right}"
-    return f"({found})" if rng.random() < 0.5 else found
+    result = f"{left}{rng.choices(_OPERATORS, _WEIGHTS)[0]}{right}"
+    return f"({result})" if rng.random() < 0.5 else result
 
 
 def _unary(rng: random.Random, depth: int) -> str:
@@ -167,7 +167,7 @@ def _let(rng: random.Random, depth: int) -> str:
 
 def _splice(rng: random.Random, body: str, *variables: str) -> str:
     """The body with its cells replaced by variables, some of them."""
-    return re.sub(r"\b[AB][1-4]\b", lambda found: rng.choice([*variables, found[0]]), body)
+    return re.sub(r"\b[AB][1-4]\b", lambda result: rng.choice([*variables, result[0]]), body)
 
 
 def _lambda(rng: random.Random, depth: int, *parameters: str) -> str:

@@ -70,17 +70,17 @@ def book_parts() -> tuple[tuple[str, bytes], ...]:
 def make(rng: random.Random) -> Input:
     """The book with one block, or the names that lead to the cells, changed in one to three ways."""
     parts = dict(book_parts())
-    said = []
+    message = []
     for _ in range(rng.choice([1, 1, 1, 2, 3])):
         if rng.random() < 0.85:
-            said.append(_change_block(rng, parts))
+            message.append(_change_block(rng, parts))
         else:
-            said.append(_change_name(rng, parts))
+            message.append(_change_name(rng, parts))
     stream = io.BytesIO()
     with zipfile.ZipFile(stream, "w") as package:
         for name, data in parts.items():
             package.writestr(name, data)
-    return Input("fuzz.xlsx", stream.getvalue(), "; ".join(said), steps_of(rng, _STEPS))
+    return Input("fuzz.xlsx", stream.getvalue(), "; ".join(message), steps_of(rng, _STEPS))
 
 
 def run(given: Input, folder: Path) -> Reached:
@@ -115,17 +115,17 @@ def refuse_silence(given: Input) -> None:
 def _change_block(rng: random.Random, parts: dict[str, bytes]) -> str:
     drawings = [name for name, data in parts.items() if name.endswith(".vml") and _TEXT.search(data)]
     name = rng.choice(drawings)
-    found = list(_TEXT.finditer(parts[name]))
-    match = max(found, key=lambda each: len(each[2])) if rng.random() < 0.7 else rng.choice(found)
+    result = list(_TEXT.finditer(parts[name]))
+    match = max(result, key=lambda each: len(each[2])) if rng.random() < 0.7 else rng.choice(result)
     text = match[2].decode()
-    told, change = rng.choice(BLOCK_CHANGES)
+    messages, change = rng.choice(BLOCK_CHANGES)
     try:
         new = change(rng, text)
     except (ValueError, zlib.error, IndexError):
-        return f"{told}, of what was broken already"
+        return f"{messages}, of what was broken already"
     data = parts[name]
     parts[name] = data[: match.start(2)] + new.encode("utf-8", "replace") + data[match.end(2) :]
-    return f"{name}: {told}"
+    return f"{name}: {messages}"
 
 
 def _stream(text: str) -> bytearray:

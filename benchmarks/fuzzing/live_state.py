@@ -39,15 +39,15 @@ _PATHS: Final = (
 def make(rng: random.Random) -> Input:
     """One of the two files, with some values changed; or with its bytes changed."""
     name, document = rng.choice([(_RECENT, _recent(rng)), (_SCENARIOS, _scenarios(rng))])
-    said = [name, *(edited(rng, document) for _ in range(rng.choice([0, 1, 1, 2, 4])))]
+    message = [name, *(edited(rng, document) for _ in range(rng.choice([0, 1, 1, 2, 4])))]
     data = json.dumps(document).encode("utf-8", "surrogatepass")
     if rng.random() < 0.2:
         broken = bytearray(data)
         for _ in range(rng.randint(1, 4)):
             broken[rng.randrange(len(broken))] = rng.randrange(256)
         data = bytes(broken[: rng.randrange(len(broken))] if rng.random() < 0.3 else broken)
-        said.append("bytes changed")
-    return Input(name, data, "; ".join(said))
+        message.append("bytes changed")
+    return Input(name, data, "; ".join(message))
 
 
 def _recent(rng: random.Random) -> dict[str, Any]:
@@ -82,8 +82,8 @@ def run(given: Input, folder: Path) -> Reached:
 
 def _recent_again(keeper: Keeper, book: Path, state: Path, data: bytes) -> Reached:
     library = Library(keeper)
-    found, trouble = library.recent(), library.trouble
-    json.dumps([found, trouble], allow_nan=False).encode()
+    result, trouble = library.recent(), library.trouble
+    json.dumps([result, trouble], allow_nan=False).encode()
     if trouble and data not in [each.read_bytes() for each in state.iterdir() if ".damaged" in each.name]:
         raise Disagreement("recent.json: a damaged file is gone")
     library.opened(book)

@@ -69,18 +69,18 @@ def make(rng: random.Random) -> Input:
     """The book with its blocks, its drawings, its records or its bytes changed."""
     texts, numbers = _held()
     texts = {title: list(held) for title, held in texts.items()}
-    said = []
+    message = []
     level = rng.choice(["blocks", "drawing", "drawing", "records", "records", "file"])
     if level == "blocks":
         title = rng.choice(_TITLES[1:])
         at = rng.randrange(len(texts[title]))
-        told, change = rng.choice(BLOCK_CHANGES)
+        messages, change = rng.choice(BLOCK_CHANGES)
         name, text = texts[title][at]
         try:
             texts[title][at] = (name, change(rng, text))
         except (ValueError, zlib.error, IndexError):
-            told = "nothing"
-        said.append(f"{title}: {told}")
+            messages = "nothing"
+        message.append(f"{title}: {messages}")
     how = rng.choice(_DRAWINGS)
     sheets = {}
     for title in _TITLES:
@@ -89,16 +89,16 @@ def make(rng: random.Random) -> Input:
     if level == "drawing":
         title = rng.choice(_TITLES)
         sheets[title] = _in_drawing(rng, sheets[title])
-        said.append(f"{title}: the bytes of its drawing")
+        message.append(f"{title}: the bytes of its drawing")
     data = plain_book(sheets)
     if level == "records":
-        told, change_records = rng.choice(_RECORDS)
+        messages, change_records = rng.choice(_RECORDS)
         data = compound({"Workbook": change_records(rng, stream_of(data))})
-        said.append(told)
+        message.append(messages)
     elif level == "file":
         data = _in_file(rng, data)
-        said.append("bytes of the file")
-    return Input("fuzz.xls", data, f"{how}: {'; '.join(said)}", steps_of(rng, _STEPS))
+        message.append("bytes of the file")
+    return Input("fuzz.xls", data, f"{how}: {'; '.join(message)}", steps_of(rng, _STEPS))
 
 
 def run(given: Input, folder: Path) -> Reached:
@@ -129,14 +129,14 @@ def _in_drawing(rng: random.Random, records: bytes) -> bytes:
 
 
 def _records_of(stream: bytes) -> list[tuple[int, bytes]]:
-    found, at = [], 0
+    result, at = [], 0
     while at + 4 <= len(stream):
         kind, length = struct.unpack_from("<HH", stream, at)
         if kind == 0 and length == 0:
             break
-        found.append((kind, stream[at + 4 : at + 4 + length]))
+        result.append((kind, stream[at + 4 : at + 4 + length]))
         at += 4 + length
-    return found
+    return result
 
 
 def _joined(records: list[tuple[int, bytes]]) -> bytes:

@@ -16,7 +16,7 @@ from xlmc.outputs.summary import summarise, summary_text
 __all__ = ["examined"]
 
 
-def examined(found: RunResult, folder: Path, steps: tuple[str, ...]) -> None:
+def examined(result: RunResult, folder: Path, steps: tuple[str, ...]) -> None:
     """Summarise the run with the step `summary`; `write` result workbook, page, JSON and run, and read them again.
 
     Raises:
@@ -24,8 +24,8 @@ def examined(found: RunResult, folder: Path, steps: tuple[str, ...]) -> None:
         XlmcError: as xlmc does.
     """
     if "summary" in steps:
-        summary_text(summarise(found))
-        _ = found.warnings, found.notices_of_run
+        summary_text(summarise(result))
+        _ = result.warnings, result.notices_of_run
     if "write" not in steps:
         return
     from xlmc.outputs.replay import replay
@@ -33,13 +33,13 @@ def examined(found: RunResult, folder: Path, steps: tuple[str, ...]) -> None:
     book, page, document, run = (folder / f"out.{end}" for end in ("xlsx", "html", "json", "xlmcrun"))
     for path in (book, page, document, run):
         path.unlink(missing_ok=True)
-    Simulation(found).save_json(document)
+    Simulation(result).save_json(document)
     json.loads(document.read_text("utf-8"), parse_constant=_refuse)
-    Simulation(found).save_page(page)
+    Simulation(result).save_page(page)
     page.read_text("utf-8")
-    Simulation(found).keep(run)
-    Simulation(found).save(book)
-    _whole(book, found.model.workbook.parts)
+    Simulation(result).keep(run)
+    Simulation(result).save(book)
+    _whole(book, result.model.workbook.parts)
     for path in (book, run):
         if not replay(path).to_the_last_bit:
             raise Disagreement(f"replay of {path.suffix}: the repeat is not identical")

@@ -52,12 +52,12 @@ def _run_of(folder: Path, name: str, data: bytes, options: dict[str, Any]) -> tu
     (folder / name).write_bytes(data)
     trials = {"until_accepted": None, "precision": None}.keys() & options.keys()
     most = 5_000 if trials or name == _BOOKS[0] else TRIALS
-    found = Simulation(run_model(load(folder / name), RunOptions.of(trials=most, **options)))
+    result = Simulation(run_model(load(folder / name), RunOptions.of(trials=most, **options)))
     run, book = folder / "made.xlmcrun", folder / f"{Path(name).stem}-results.xlsx"
     for path in (run, book):
         path.unlink(missing_ok=True)
-    found.keep(run)
-    found.save(book)
+    result.keep(run)
+    result.save(book)
     return name, run.read_bytes(), book.read_bytes()
 
 
@@ -66,19 +66,19 @@ def make(rng: random.Random) -> Input:
     saved = _saved()
     name, kept, book = rng.choices(saved, [1 if each[0] in _BOOKS else 8 for each in saved])[0]
     if rng.random() < 0.12:
-        data, said = _edited_book(rng, book)
-        return Input("fuzz-results.xlsx", data, f"results of {name}: {said}")
-    said, data = [name], kept
+        data, message = _edited_book(rng, book)
+        return Input("fuzz-results.xlsx", data, f"results of {name}: {message}")
+    message, data = [name], kept
     if rng.random() < 0.85:
         entries = _entries(kept)
         for _ in range(rng.choice([1, 1, 1, 2, 3])):
-            told, edit = rng.choices(_EDITS, _WEIGHTS)[0]
-            said.append(f"{told} {edit(rng, entries) or ''}")
+            messages, edit = rng.choices(_EDITS, _WEIGHTS)[0]
+            message.append(f"{messages} {edit(rng, entries) or ''}")
         data = _stored(entries)
     else:
         data = _bytes(rng, kept)
-        said.append("bytes changed")
-    return Input("fuzz.xlmcrun", data, "; ".join(said), steps_of(rng, _STEPS))
+        message.append("bytes changed")
+    return Input("fuzz.xlmcrun", data, "; ".join(message), steps_of(rng, _STEPS))
 
 
 def run(given: Input, folder: Path) -> Reached:
@@ -92,9 +92,9 @@ def run(given: Input, folder: Path) -> Reached:
     path = folder / given.name
     path.write_bytes(given.data)
     if path.suffix == ".xlsx":
-        found = replay(path)
-        if found.fault is not None and not isinstance(found.fault, XlmcError):
-            raise found.fault
+        result = replay(path)
+        if result.fault is not None and not isinstance(result.fault, XlmcError):
+            raise result.fault
         return Reached.RAN
     opened = open_run(path)
     examined(opened, folder, given.steps)
@@ -146,10 +146,10 @@ def _put(entries: Entries, at: int, document: object) -> None:
 def _edit_document(rng: random.Random, entries: Entries) -> str:
     """One value of `run.json`, any deep, becomes another."""
     at, document = _document(entries)
-    said = edited(rng, document)
-    if said:
+    message = edited(rng, document)
+    if message:
         _put(entries, at, document)
-    return said
+    return message
 
 
 def _edit_column(rng: random.Random, entries: Entries) -> str:
@@ -159,7 +159,7 @@ def _edit_column(rng: random.Random, entries: Entries) -> str:
         return ""
     at = rng.choice(columns)
     name, content = entries[at]
-    made, said = rng.choice(_COLUMN_EDITS)(rng, content)
+    made, message = rng.choice(_COLUMN_EDITS)(rng, content)
     entries[at] = name, made
     where, document = _document(entries)
     listed = document.get("columns") if isinstance(document, dict) else None
@@ -170,7 +170,7 @@ def _edit_column(rng: random.Random, entries: Entries) -> str:
             if body is not None and rng.random() < 0.9:
                 column["count"] = int(body.size)
     _put(entries, where, document)
-    return f"{name}: {said}"
+    return f"{name}: {message}"
 
 
 def _body(content: bytes) -> Any:
@@ -246,15 +246,15 @@ def _edit_workbook(rng: random.Random, entries: Entries) -> str:
         return ""
     if rng.random() < 0.3:
         data = rng.choice([rng.choice(_saved())[2], rng.choice(shipped())[1], b"", b"PK", formulas.book_of("RAND()")])
-        said = "another"
+        message = "another"
     else:
-        data, said = _edited_book(rng, entries[at][1])
+        data, message = _edited_book(rng, entries[at][1])
     entries[at] = "workbook", data
     where, document = _document(entries)
     if isinstance(document, dict) and isinstance(document.get("workbook"), dict):
         document["workbook"]["sha256"] = hashlib.sha256(data).hexdigest()
     _put(entries, where, document)
-    return said
+    return message
 
 
 def _edit_entries(rng: random.Random, entries: Entries) -> str:
@@ -278,13 +278,13 @@ def _edited_book(rng: random.Random, data: bytes) -> tuple[bytes, str]:
     except (zipfile.BadZipFile, ValueError, OSError):
         return data, "none"
     texts = [n for n, (name, _) in enumerate(entries) if "sheet" in name or rng.random() < 0.15]
-    said = []
+    message = []
     for _ in range(rng.randint(1, 3)):
         at = rng.choice(texts or [0])
         made, how = changed(rng, entries[at][1])
         entries[at] = entries[at][0], made
-        said.append(f"{entries[at][0]}: {how}")
-    return _stored(entries), "; ".join(said)
+        message.append(f"{entries[at][0]}: {how}")
+    return _stored(entries), "; ".join(message)
 
 
 def _bytes(rng: random.Random, data: bytes) -> bytes:

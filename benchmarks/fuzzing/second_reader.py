@@ -35,11 +35,11 @@ def second_reading(data: bytes) -> Cells | None:
 
     try:
         book = CalamineWorkbook.from_filelike(io.BytesIO(data))
-        found: Cells = {}
+        result: Cells = {}
         for name in book.sheet_names:
             sheet = book.get_sheet_by_name(name)
             rows = sheet.to_python(skip_empty_area=False)
-            found[name] = {
+            result[name] = {
                 (row, column): value
                 for row, cells in enumerate(rows, 1)
                 for column, value in enumerate(cells, 1)
@@ -51,7 +51,7 @@ def second_reading(data: bytes) -> Cells | None:
         if type(error).__name__ != "PanicException":
             raise
         return None
-    return found
+    return result
 
 
 def agreed(book: Workbook, data: bytes) -> Cells | None:
@@ -71,7 +71,7 @@ def agreed(book: Workbook, data: bytes) -> Cells | None:
 def _in_older_encoding(data: bytes) -> bool:
     with zipfile.ZipFile(io.BytesIO(data)) as package:
         starts = [package.open(name).read(100) for name in package.namelist() if name.endswith((".xml", ".rels"))]
-    return any((found := _DECLARED.match(start)) and not found[1].lower().startswith(b"utf") for start in starts)
+    return any((result := _DECLARED.match(start)) and not result[1].lower().startswith(b"utf") for start in starts)
 
 
 def differing(book: Workbook, cells: Cells) -> Iterator[str]:

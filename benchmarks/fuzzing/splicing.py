@@ -22,17 +22,17 @@ _HOME: Final = ("A1", "A2", "A3", "A4", "A5", "B1", "C2", "D6", "B1:D6", "A1:A4"
 @cache
 def _formulas() -> tuple[str, ...]:
     """Every formula text of the shipped books."""
-    found = set()
+    result = set()
     for name, data in shipped():
         for sheet in read_workbook(data, name).sheets.values():
-            found |= {cell.formula.text for cell in sheet.cells.values() if cell.formula is not None}
-    return tuple(sorted(found))
+            result |= {cell.formula.text for cell in sheet.cells.values() if cell.formula is not None}
+    return tuple(sorted(result))
 
 
 def spliced(rng: random.Random) -> str:
     """A shipped formula whose references are those of the fuzzed book, with some parts replaced by others."""
     text = rng.choice(_formulas())[:2000]
-    text = _TOKEN.sub(lambda found: _moved(rng, found[0]), text)
+    text = _TOKEN.sub(lambda result: _moved(rng, result[0]), text)
     for _ in range(rng.randint(0, 3)):
         text = _replaced(rng, text)
     return text
@@ -47,7 +47,7 @@ def _moved(rng: random.Random, token: str) -> str:
 
 def _replaced(rng: random.Random, text: str) -> str:
     """One part, in brackets or a token, replaced by a piece of the grammar, of another formula or of the same."""
-    pieces = [found.span() for found in re.finditer(r"\([^()]*\)|[A-D]\d|\d+(?:\.\d+)?|[-+*/^<>=&,]", text)]
+    pieces = [result.span() for result in re.finditer(r"\([^()]*\)|[A-D]\d|\d+(?:\.\d+)?|[-+*/^<>=&,]", text)]
     if not pieces:
         return text
     start, end = rng.choice(pieces)

@@ -65,8 +65,8 @@ _Grid = dict[str, list[dict[str, object]]]
 def make(rng: random.Random) -> Input:
     """Tables of some sense, of which some values were changed."""
     rows = _sensible(rng)
-    said = [_change(rng, rows) for _ in range(rng.choice([0, 0, 0, 1, 1, 1, 1, 2, 2, 3, 5]))]
-    return Input("fuzz.xlsx", _book(rng, rows), "; ".join(said), steps_of(rng, _STEPS))
+    message = [_change(rng, rows) for _ in range(rng.choice([0, 0, 0, 1, 1, 1, 1, 2, 2, 3, 5]))]
+    return Input("fuzz.xlsx", _book(rng, rows), "; ".join(message), steps_of(rng, _STEPS))
 
 
 def run(given: Input, folder: Path) -> Reached:
@@ -83,8 +83,8 @@ def run(given: Input, folder: Path) -> Reached:
     if {"check", "simulate"} & {*given.steps}:
         return commanded(path, given.steps)
     model = load(path)
-    found = run_model(model, RunOptions.of(trials=TRIALS))
-    examined(found, folder, given.steps)
+    result = run_model(model, RunOptions.of(trials=TRIALS))
+    examined(result, folder, given.steps)
     if "jit" in given.steps:
         run_model(model, RunOptions.of(trials=TRIALS, engine="jit"))
     return Reached.RAN

@@ -47,10 +47,10 @@ def changed(rng: random.Random, xml: bytes) -> tuple[bytes, str]:
 
 def _one(rng: random.Random, pattern: re.Pattern[str], text: str, change: Callable[[str], str]) -> str:
     """One match of the pattern, chosen at random, changed."""
-    found = list(pattern.finditer(text))
-    if not found:
+    result = list(pattern.finditer(text))
+    if not result:
         return text
-    start, end = rng.choice(found).span()
+    start, end = rng.choice(result).span()
     return text[:start] + change(text[start:end]) + text[end:]
 
 
@@ -70,10 +70,10 @@ def _attribute_value(rng: random.Random, text: str) -> str:
 
 
 def _attribute_swapped(rng: random.Random, text: str) -> str:
-    found = _POINTED.findall(text)
-    if not found:
+    result = _POINTED.findall(text)
+    if not result:
         return text
-    same = rng.choice(found)
+    same = rng.choice(result)
     values = re.findall(rf'\b{same}="([^"]*)"', text)
     return _one(rng, re.compile(rf'\b{same}="[^"]*"'), text, lambda _: f'{same}="{rng.choice(values)}"')
 
@@ -106,10 +106,10 @@ def _element_twice(rng: random.Random, text: str) -> str:
 
 
 def _element_moved(rng: random.Random, text: str) -> str:
-    found = [match.span() for match in _ELEMENT.finditer(text)]
-    if len(found) < 2:
+    result = [match.span() for match in _ELEMENT.finditer(text)]
+    if len(result) < 2:
         return text
-    (a, b), (c, d) = sorted(rng.sample(found, 2))
+    (a, b), (c, d) = sorted(rng.sample(result, 2))
     return text if c < b else text[:a] + text[c:d] + text[b:c] + text[a:b] + text[d:]
 
 
@@ -144,8 +144,8 @@ def _prefixed(_: random.Random, text: str) -> str:
 
 def _bomb(rng: random.Random, text: str) -> str:
     declared = rng.choice([_BOMB, _OUTSIDE, "<!DOCTYPE z>"])
-    head, found, rest = text.partition("?>")
-    text = f"{head}{found}{declared}{rest}" if found else declared + text
+    head, result, rest = text.partition("?>")
+    text = f"{head}{result}{declared}{rest}" if result else declared + text
     return _one(rng, _TEXT, text, lambda _: rng.choice([">&i;<", ">&a;<"]))
 
 

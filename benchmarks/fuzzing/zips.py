@@ -42,30 +42,30 @@ _NAME: Final = "fuzz.xlsx"
 def _books() -> tuple[tuple[str, tuple[tuple[str, bytes], ...]], ...]:
     """Name and parts of the books that are broken: those shipped, and some with what these do not use."""
     made = [("featured", featured()), ("formulas", formulas.book_of("SUM(B1:D6)+Twice(A1)", "dynamic"))]
-    found = []
+    result = []
     for name, data in [*shipped(), *made * 40]:
         with zipfile.ZipFile(io.BytesIO(data)) as package:
-            found.append((name, tuple((entry, package.read(entry)) for entry in package.namelist())))
-    return tuple(found)
+            result.append((name, tuple((entry, package.read(entry)) for entry in package.namelist())))
+    return tuple(result)
 
 
 def make(rng: random.Random) -> Input:
     """One of the books, changed in one to four ways."""
     name, kept = rng.choice(_books())
-    parts, said = list(kept), [name]
+    parts, message = list(kept), [name]
     for _ in range(rng.choice([1, 1, 1, 2, 2, 3, 4])):
         if rng.random() < 0.85:
-            said.append(_change_xml(rng, parts))
+            message.append(_change_xml(rng, parts))
         else:
-            told, change = rng.choice(_PART_CHANGES)
+            messages, change = rng.choice(_PART_CHANGES)
             change(rng, parts)
-            said.append(told)
+            message.append(messages)
     data = _zip(rng, parts)
     if rng.random() < 0.15:
-        told, broken = rng.choice(_BYTE_CHANGES)
+        messages, broken = rng.choice(_BYTE_CHANGES)
         data = broken(rng, data)
-        said.append(told)
-    return Input(_NAME, data, "; ".join(said), steps_of(rng, _STEPS))
+        message.append(messages)
+    return Input(_NAME, data, "; ".join(message), steps_of(rng, _STEPS))
 
 
 def run(given: Input, folder: Path) -> Reached:
@@ -94,8 +94,8 @@ def run(given: Input, folder: Path) -> Reached:
     if path.suffix != ".xls":  # of which LibreOffice makes the cells
         agreed(workbook, given.data)
     calculated, definitions = defined(workbook, given.steps)
-    found = run_model(CompiledModel(calculated, definitions, path), RunOptions.of(trials=TRIALS))
-    examined(found, folder, given.steps)
+    result = run_model(CompiledModel(calculated, definitions, path), RunOptions.of(trials=TRIALS))
+    examined(result, folder, given.steps)
     return Reached.RAN
 
 
@@ -123,9 +123,9 @@ def _change_xml(rng: random.Random, parts: list[tuple[str, bytes]]) -> str:
     ]
     at = rng.choice(read or range(len(parts))) if rng.random() < 0.9 else rng.randrange(len(parts))
     name, xml = parts[at]
-    made, said = changed(rng, xml)
+    made, message = changed(rng, xml)
     parts[at] = name, made
-    return f"{name}: {said}"
+    return f"{name}: {message}"
 
 
 def _twice(rng: random.Random, parts: list[tuple[str, bytes]]) -> None:
@@ -225,7 +225,7 @@ def _truncated(rng: random.Random, data: bytes) -> bytes:
 def _sizes(rng: random.Random, data: bytes) -> bytes:
     """Sizes, offsets or counts of the directory that lie."""
     broken = bytearray(data)
-    entries = [found.start() for found in re.finditer(b"PK\1\2", data)] or [0]
+    entries = [result.start() for result in re.finditer(b"PK\1\2", data)] or [0]
     at = rng.choice(entries) + rng.choice([8, 10, 16, 20, 24, 28, 30, 32, 42])
     lie = rng.choice([0, 1, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF, 0xFFFF, 100_000_000])
     if at + 4 <= len(broken):

@@ -34,8 +34,8 @@ def after_filters(method: str, acceptance: float, trials: int, runs: int, first:
     for seed in range(first, first + runs):
         sample = one_run(problem, plan, seed)
         accepted += sample.n
-        found = [*estimates(sample), _acceptance(sample, plan)]
-        for place, (estimate, true) in enumerate(zip(found, truth, strict=True)):
+        result = [*estimates(sample), _acceptance(sample, plan)]
+        for place, (estimate, true) in enumerate(zip(result, truth, strict=True)):
             if estimate.interval is not None:
                 given[place] += 1
                 hits[place] += estimate.interval[0] <= true <= estimate.interval[1]
@@ -51,8 +51,8 @@ def _acceptance(sample: xs.Sample, plan: SamplingPlan) -> xs.Estimate:
         return xs.proportion(sample.n, plan.trials)
     counts = np.zeros(plan.replicates)
     if sample.group is not None and sample.n:
-        found = np.bincount(sample.group, minlength=sample.groups)
-        counts[: found.size] = found  # which of them is which does not matter
+        result = np.bincount(sample.group, minlength=sample.groups)
+        counts[: result.size] = result  # which of them is which does not matter
     return xs.replicated_proportion(counts, np.full(plan.replicates, plan.size))
 
 
@@ -71,7 +71,7 @@ def _wilson(hits: Floats, trials: int) -> Floats:
 
 def shares(acceptance: float, expected: Floats) -> dict[str, Any]:
     """Exact coverage of the acceptance where so many are expected to be accepted, `(n,)`; xlmc's, and two others'."""
-    found: dict[str, list[float]] = {"xlmc": [], "Wilson": [], "Clopper–Pearson": []}
+    result: dict[str, list[float]] = {"xlmc": [], "Wilson": [], "Clopper–Pearson": []}
     for count in expected:
         trials = max(1, round(float(count) / acceptance))
         most = min(trials, int(count + 12 * count**0.5 + 40))
@@ -82,8 +82,8 @@ def shares(acceptance: float, expected: Floats) -> dict[str, Any]:
             "Clopper–Pearson": [xs.proportion(k, trials, method="clopper-pearson").interval for k in counts],
         }
         for name, ends in ways.items():
-            found[name].append(float(exact_coverage(np.array(ends), trials, np.array([acceptance]))[0]))
-    return {"acceptance": acceptance, "expected": expected.tolist(), "coverage": found}
+            result[name].append(float(exact_coverage(np.array(ends), trials, np.array([acceptance]))[0]))
+    return {"acceptance": acceptance, "expected": expected.tolist(), "coverage": result}
 
 
 def waited_for(acceptance: float, wanted: int, points: int = 20_000) -> dict[str, float]:
@@ -97,9 +97,9 @@ def waited_for(acceptance: float, wanted: int, points: int = 20_000) -> dict[str
     step = max(1, (high - low) // points)
     misses = np.arange(low, high + step, step)
     chances = np.diff(law.cdf(np.append(misses, misses[-1] + step) - 1))
-    found = [xs.inverse_proportion(wanted, wanted + int(miss) + step // 2) for miss in misses]
-    ends = np.array([estimate.interval for estimate in found])
-    unbiased = np.array([estimate.value for estimate in found])
+    result = [xs.inverse_proportion(wanted, wanted + int(miss) + step // 2) for miss in misses]
+    ends = np.array([estimate.interval for estimate in result])
+    unbiased = np.array([estimate.value for estimate in result])
     plain = wanted / (wanted + misses + step // 2)
     return {
         "coverage": float(np.sum(chances * ((ends[:, 0] <= acceptance) & (acceptance <= ends[:, 1])))),

@@ -54,16 +54,16 @@ def compared(model: CompiledModel, pairs: Pairs, run: RunResult) -> list[dict[st
     """The same of a run that was made."""
     trials = run.accepted
     (group,) = model.groups
-    found = []
+    result = []
     for (first, second), asked in pairs.items():
         i, j = group.names.index(first), group.names.index(second)
         aimed = float(group.copula.spearman[i, j])
         got = rank_correlation(run.inputs[first], run.inputs[second])
-        found.append(
+        result.append(
             {"pair": f"{first}, {second}", "asked": asked, "aimed": aimed, "expected": _expected(aimed, trials),
              "found": got.value, "error": _error(aimed, trials)}
         )  # fmt: skip
-    return found
+    return result
 
 
 def _expected(rank: float, trials: int) -> float:

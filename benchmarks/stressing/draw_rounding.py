@@ -37,17 +37,17 @@ FLOOR: Final = 1e-17
 """The smallest error drawn."""
 
 
-def draw(found: Mapping[str, Any], folder: Path) -> list[Path]:
+def draw(result: Mapping[str, Any], folder: Path) -> list[Path]:
     """A panel a sweep; solid lines are rewritten forms, dashed ones printed."""
-    return [_drawn(found, name, folder / f"{name}.png") for name in CHARTS]
+    return [_drawn(result, name, folder / f"{name}.png") for name in CHARTS]
 
 
-def _drawn(found: Mapping[str, Any], name: str, path: Path) -> Path:
+def _drawn(result: Mapping[str, Any], name: str, path: Path) -> Path:
     title, sweeps, numbers = CHARTS[name]
     width = max(5.2 * len(sweeps) + 0.6, 12.5)
     made, axes = figure(1, len(sweeps), title, figsize=(width, 5.6), sharey="row")
     for axis, sweep in zip(axes.flat, sweeps, strict=True):
-        _panel(axis, found[sweep], numbers)
+        _panel(axis, result[sweep], numbers)
         axis.set_title(SWEEPS[sweep].title, fontsize=11)
         axis.set_xlabel(SWEEPS[sweep].axis)
         axis.axhline(UNIT, color="#6B7785", lw=1, ls=":", label="one rounding")

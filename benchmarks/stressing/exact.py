@@ -55,19 +55,19 @@ def _tangential(e: Evidence, first: Vector, second: Vector) -> Any:
     return _dot((first[0] - second[0], first[1] - second[1]), _direction(e["gamma_t"]))
 
 
-def _force_direction(found: Mapping[str, Any]) -> Any:
-    change, heading = found["change"][1], found["u"][1]
+def _force_direction(result: Mapping[str, Any]) -> Any:
+    change, heading = result["change"][1], result["u"][1]
     force = -change[0], -change[1]
     return mp.degrees(mp.atan2(_cross(heading, force), _dot(heading, force)))
 
 
 ANSWERS: Final[Mapping[str, Callable[[dict[str, Any]], Any]]] = {
-    "V1_i": lambda found: found["speed"][1],
-    "V2_i": lambda found: found["speed"][2],
-    "d_omega_1": lambda found: found["turn"][1],
-    "dV_1": lambda found: mp.hypot(*found["change"][1]),
+    "V1_i": lambda result: result["speed"][1],
+    "V2_i": lambda result: result["speed"][2],
+    "d_omega_1": lambda result: result["turn"][1],
+    "dV_1": lambda result: mp.hypot(*result["change"][1]),
     "PDOF_1": _force_direction,
-    "e_t": lambda found: -found["sliding"][1] / found["sliding"][0],
+    "e_t": lambda result: -result["sliding"][1] / result["sliding"][0],
 }
 """By the rewritten cell of each form. A blow pushes vehicle 1 along its ΔV and comes from the other side: −ΔV."""
 
@@ -75,8 +75,8 @@ ANSWERS: Final[Mapping[str, Callable[[dict[str, Any]], Any]]] = {
 def exact(evidence: Evidence) -> dict[str, Any]:
     """Every answer, of evidence taken as the exact numbers that it is."""
     with mp.workdps(DIGITS):
-        found = _solved({name: mpf(value) for name, value in evidence.items()})
-        return {name: answer(found) for name, answer in ANSWERS.items()}
+        result = _solved({name: mpf(value) for name, value in evidence.items()})
+        return {name: answer(result) for name, answer in ANSWERS.items()}
 
 
 def conditioning(evidence: Evidence) -> dict[str, float]:
@@ -92,10 +92,10 @@ def conditioning(evidence: Evidence) -> dict[str, float]:
         quantities = _quantities(held)
         moved = dict.fromkeys(base, mpf(0))
         for name, value in quantities.items():
-            found = _solved(_evidence({**quantities, name: value * (1 + STEP)}))
+            result = _solved(_evidence({**quantities, name: value * (1 + STEP)}))
             for answer, compute in ANSWERS.items():
                 scale = mpf(180) if answer == "PDOF_1" else base[answer]
-                apart = compute(found) - base[answer]
+                apart = compute(result) - base[answer]
                 if answer == "PDOF_1":
                     apart = (apart + 180) % 360 - 180
                 moved[answer] += abs(apart / STEP / scale) if scale else mp.inf

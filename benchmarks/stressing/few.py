@@ -47,12 +47,12 @@ def coverage(name: str, trials: int, runs: int) -> dict[str, Any]:
     law, true = FORECASTS[name], truths(name)
     threshold = float(law.ppf(0.7))
     draws = law.rvs((runs, trials), random_state=np.random.default_rng(trials))
-    found = {statistic: [0, 0] for statistic in STATISTICS}
+    result = {statistic: [0, 0] for statistic in STATISTICS}
     for row in draws:
         sample = xs.Sample.of(row)
         for statistic, compute in STATISTICS.items():
             interval = compute(sample, threshold).interval
             if interval is not None:
-                found[statistic][0] += 1
-                found[statistic][1] += int(interval[0] <= true[statistic] <= interval[1])
-    return {"forecast": name, "trials": trials, "runs": runs, "found": found}
+                result[statistic][0] += 1
+                result[statistic][1] += int(interval[0] <= true[statistic] <= interval[1])
+    return {"forecast": name, "trials": trials, "runs": runs, "found": result}

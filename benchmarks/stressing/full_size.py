@@ -22,10 +22,10 @@ Found = Mapping[str, Any]
 
 def forms(fewer: int) -> Found:
     """Sweep -> errors by engine and cell, and conditioning."""
-    model, found = forms_book(), {}
+    model, result = forms_book(), {}
     for name, sweep in SWEEPS.items():
         at = measured(model, sweep.points()[::fewer], FORMS_ENGINES)
-        found[name] = {
+        result[name] = {
             "x": at.x.tolist(),
             "errors": {
                 engine: {cell: np.minimum(errors, 1e300).tolist() for cell, errors in cells.items()}
@@ -33,7 +33,7 @@ def forms(fewer: int) -> Found:
             },
             "conditions": {cell: values.tolist() for cell, values in at.conditions.items()},
         }
-    return found
+    return result
 
 
 PER_REPLICATE = {1e-2: (0.5, 1, 2, 3, 5, 8, 12, 20, 50), 1e-3: (1, 3, 8, 20)}
@@ -82,8 +82,8 @@ def correlations(fewer: int) -> Found:
         named = {("first", "second"): asked}
         model = dependence.book(named)
         for sampling in ("mc", "lhs"):
-            found = [dependence.measure(model, named, trials, seed, sampling)[0] for seed in seeds]
-            pairs.append({"sampling": sampling, "asked": asked, "found": found})
+            result = [dependence.measure(model, named, trials, seed, sampling)[0] for seed in seeds]
+            pairs.append({"sampling": sampling, "asked": asked, "found": result})
     for name, named in dependence.MATRICES.items():
         model = dependence.book(named)
         notices = [str(notice.message) for notice in model.notices]

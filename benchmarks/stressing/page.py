@@ -33,11 +33,11 @@ def _table(headings: Sequence[str], rows: Sequence[Sequence[str]], left: int = 1
     return "\n".join(f"| {' | '.join(cells)} |" for cells in (headings, rules, *rows))
 
 
-def _forms(found: Found) -> str:
+def _forms(result: Found) -> str:
     """Largest relative error along each sweep, printed → rewritten."""
     rows = []
     for name, sweep in SWEEPS.items():
-        errors = found[name]["errors"]["numpy"]
+        errors = result[name]["errors"]["numpy"]
         cells = [f"{_power(errors[form.printed])} → {_power(errors[form.rewritten])}" for form in FORMS]
         rows.append([sweep.title, *cells])
     return _table(["sweep", *(f"({form.number})" for form in FORMS)], rows)
@@ -49,9 +49,9 @@ def _power(errors: Sequence[float]) -> str:
     return "wrong" if largest > 0.5 else f"{largest:.0e}".replace("e-0", "e-")
 
 
-def _correlations(found: Found) -> str:
+def _correlations(result: Found) -> str:
     rows = []
-    for matrix in found["matrices"]:
+    for matrix in result["matrices"]:
         asked, used, drawn = (
             ", ".join(f"{pair[key]:.3g}" if key == "asked" else f"{pair[key]:.4f}" for pair in matrix["found"])
             for key in ("asked", "aimed", "found")
@@ -60,10 +60,10 @@ def _correlations(found: Found) -> str:
     return _table(["three assumptions", "asked for", "used", "drawn", "notice"], rows, 5)
 
 
-def _few(found: Found) -> str:
+def _few(result: Found) -> str:
     """Coverage in percent, of a few numbers of trials."""
     sizes = (2, 3, 10, 30, 100, 1000)
-    cells = {(cell["forecast"], cell["trials"]): cell["found"] for cell in found["cells"]}
+    cells = {(cell["forecast"], cell["trials"]): cell["found"] for cell in result["cells"]}
     shown = [n for n in sizes if ("normal", n) in cells]
     rows = []
     for forecast in ("normal", "exponential"):
@@ -74,7 +74,7 @@ def _few(found: Found) -> str:
     return _table(["forecast", "statistic", *(f"{n:,} trials" for n in shown)], rows, 2)
 
 
-def _stops(found: Found) -> str:
+def _stops(result: Found) -> str:
     rows = [
         [
             row["forecast"],
@@ -85,17 +85,17 @@ def _stops(found: Found) -> str:
             f"{row['fixed']['bias']:+.2f}",
             f"{row['length'] / row['needed']:.2f}",
         ]
-        for row in found["precise"]
+        for row in result["precise"]
     ]
     headings = ["forecast", "accepted trials needed", "intervals that hold, %", "without a rule", "bias, in errors"]
     headings += ["without a rule", "run over needed"]
     return _table(headings, rows)
 
 
-def _samplers(found: Found) -> str:
+def _samplers(result: Found) -> str:
     """The worst of the statistics but SD, and SD, by accepted trials a replicate and by method."""
     cells: dict[tuple[float, float], dict[str, Mapping[str, Any]]] = {}
-    for cell in found["cells"]:
+    for cell in result["cells"]:
         expected = round(cell["acceptance"] * cell["trials"] / 16, 1)
         near = next((key for key in cells if key[0] == cell["acceptance"] and abs(key[1] / expected - 1) < 0.1), None)
         cells.setdefault(near or (cell["acceptance"], expected), {})[cell["method"]] = cell

@@ -50,7 +50,7 @@ def measured(model: CompiledModel, points: Sequence[Point], engines: Sequence[st
     """Compute every form at every point with every engine, and hold it against 80 digits."""
     columns = {name: np.array([point.evidence[name] for point in points]) for name in INPUTS}
     truths = [exact(point.evidence) for point in points]
-    found = [conditioning(point.evidence) for point in points]
+    result = [conditioning(point.evidence) for point in points]
     errors = {}
     for engine in engines:
         values = values_of(model, columns, engine)
@@ -61,7 +61,7 @@ def measured(model: CompiledModel, points: Sequence[Point], engines: Sequence[st
             for form in FORMS
             for cell in (form.printed, form.rewritten)
         }
-    conditions = {form.rewritten: np.array([each[form.rewritten] for each in found]) for form in FORMS}
+    conditions = {form.rewritten: np.array([each[form.rewritten] for each in result]) for form in FORMS}
     return Measured(np.array([point.x for point in points]), errors, conditions)
 
 

@@ -91,11 +91,11 @@ def fixed_runs(name: str, length: int, runs: int, first: int = 0) -> dict[str, A
     """Runs of so many accepted trials, which nothing ends: what intervals of the mean hold then, and its bias."""
     forecast, held, scaled = FORECASTS[name], 0, []
     for seed in range(first, first + runs):
-        found = xs.mean(forecast.draw(np.random.default_rng((seed, 8)), length))
-        assert found.interval is not None
-        held += found.interval[0] <= forecast.mean <= found.interval[1]
-        if found.error:
-            scaled.append((found.value - forecast.mean) / found.error)
+        result = xs.mean(forecast.draw(np.random.default_rng((seed, 8)), length))
+        assert result.interval is not None
+        held += result.interval[0] <= forecast.mean <= result.interval[1]
+        if result.error:
+            scaled.append((result.value - forecast.mean) / result.error)
     return {"held": held, "bias": float(np.mean(scaled))}
 
 
@@ -113,14 +113,14 @@ def precise_runs(name: str, tolerance: float, runs: int, block: int = 500, first
         values = _run(rule, forecast, np.random.default_rng((seed, 5)), block)
         if values is None:
             continue
-        found = xs.mean(values)
-        assert found.interval is not None
+        result = xs.mean(values)
+        assert result.interval is not None
         ended += 1
-        held += found.interval[0] <= forecast.mean <= found.interval[1]
-        unvaried += found.error == 0.0
+        held += result.interval[0] <= forecast.mean <= result.interval[1]
+        unvaried += result.error == 0.0
         lengths.append(values.size)
-        if found.error:
-            scaled.append((found.value - forecast.mean) / found.error)
+        if result.error:
+            scaled.append((result.value - forecast.mean) / result.error)
     needed = (1.96 * forecast.deviation / forecast.mean / tolerance) ** 2
     fixed = fixed_runs(name, round(float(np.mean(lengths))), runs, first)
     return {
@@ -162,8 +162,8 @@ def stable_runs(name: str, digits: int, scale: float, runs: int, first: int = 0)
         values = _run(rule, forecast, np.random.default_rng((seed, 6)), adaptive.sequence_length(0.51))
         if values is None:
             continue
-        found = [values.mean(), values.std(ddof=1), *np.quantile(values, (0.245, 0.755))]
-        within += np.abs(found - truth) <= tolerance
+        result = [values.mean(), values.std(ddof=1), *np.quantile(values, (0.245, 0.755))]
+        within += np.abs(result - truth) <= tolerance
         lengths.append(values.size)
         ended += 1
     return {

@@ -32,16 +32,16 @@ def book() -> CompiledModel:
 def measure(model: CompiledModel, trials: int, seed: int) -> dict[str, Any]:
     """Of one run: mean and upper quartile with their errors, the farthest trial's part, and what xlmc said."""
     run = run_model(model, RunOptions.of(trials=trials, seed=seed, keep_inputs=0))
-    told = " ".join(notice.message for notice in run.notices_of_run if "depend on a single trial" in notice.message)
-    found = {}
+    messages = " ".join(notice.message for notice in run.notices_of_run if "depend on a single trial" in notice.message)
+    result = {}
     for name in FORECASTS:
         mean, quartile = run[name].mean, run[name].percentile(75)
         assert mean.interval is not None
         assert quartile.interval is not None
-        found[name] = {
+        result[name] = {
             "mean": mean.value, "error": mean.error, "interval": mean.interval,
             "quartile": quartile.value, "quartile interval": quartile.interval,
-            "farthest": farthest_part(run[name].sample), "told": repr(name) in told,
+            "farthest": farthest_part(run[name].sample), "told": repr(name) in messages,
         }  # fmt: skip
-    assert math.isfinite(found["ratio"]["mean"])
-    return {"trials": trials, "seed": seed, "found": found}
+    assert math.isfinite(result["ratio"]["mean"])
+    return {"trials": trials, "seed": seed, "found": result}

@@ -57,15 +57,15 @@ class Menu(unohelper.Base, XJobExecutor):
 
     def check(self):
         """Say that the workbook has no problem, or show the first one and select its cell."""
-        said, notices = self._run("check")
-        self._show("\n".join([notices, *said.splitlines()[-2:]]).strip(), INFOBOX)
+        message, notices = self._run("check")
+        self._show("\n".join([notices, *message.splitlines()[-2:]]).strip(), INFOBOX)
 
     def simulate(self):
         """Simulate the workbook and open the one with the results."""
-        said, notices = self._run("simulate", "--quiet")
-        results = re.search(r"^Results are in (.+)$", said, re.MULTILINE)
+        message, notices = self._run("simulate", "--quiet")
+        results = re.search(r"^Results are in (.+)$", message, re.MULTILINE)
         if results is None:
-            raise RefusedError(notices or said)
+            raise RefusedError(notices or message)
         path = Path(self._book().parent, results[1])
         hidden = tuple(each for each in self.document.getArgs() if each.Name == "Hidden")  # as the workbook itself
         opened = self.desktop.loadComponentFromURL(path.as_uri(), "_blank", 0, hidden)
@@ -99,14 +99,14 @@ class Menu(unohelper.Base, XJobExecutor):
         }
         kept |= {"NO_COLOR": "1", "COLUMNS": "400", "PYTHONIOENCODING": "utf-8", "PYTHONUNBUFFERED": "1"}
         hidden = {"creationflags": subprocess.CREATE_NO_WINDOW} if os.name == "nt" else {}
-        with tempfile.TemporaryFile() as said, tempfile.TemporaryFile() as problems:
+        with tempfile.TemporaryFile() as message, tempfile.TemporaryFile() as problems:
             process = subprocess.Popen(
                 [program, command, *options, book.name],
-                cwd=book.parent, env=kept, stdin=subprocess.DEVNULL, stdout=said, stderr=problems, **hidden,
+                cwd=book.parent, env=kept, stdin=subprocess.DEVNULL, stdout=message, stderr=problems, **hidden,
             )  # fmt: skip
-            code = self._wait(process, f"xlmc {command} {book.name}", said if until_it_speaks else None)
+            code = self._wait(process, f"xlmc {command} {book.name}", message if until_it_speaks else None)
             texts = []
-            for file in (said, problems):
+            for file in (message, problems):
                 file.seek(0)
                 texts.append(file.read().decode("utf-8", "replace").strip())
         if code not in (None, 0, 1):  # 1: computed, with something to look at

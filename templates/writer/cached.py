@@ -39,7 +39,7 @@ def computed(workbook: Workbook) -> Values:
 def _shown(lowering: Lowering, cell: Cell) -> Shown:
     value = lowering.value(cell)
     assert value is not None, f"{cell} is volatile"
-    found = value.objects().ravel()[0]
-    if isinstance(found, ErrorCode):
-        return found.text
-    return 0.0 if found is None else found  # type: ignore[no-any-return]
+    result = value.objects().ravel()[0]
+    if isinstance(result, ErrorCode):
+        return result.text
+    return 0.0 if result is None else result  # type: ignore[no-any-return]

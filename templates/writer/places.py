@@ -47,30 +47,30 @@ _GAP = 4
 
 def places(template: Template) -> dict[str, Place]:
     """Symbol -> place of every input and equation, and of the readings that formulas read."""
-    found: dict[str, Place] = {}
+    result: dict[str, Place] = {}
     row = HEADER_ROW + 1
     for group in (template.assumptions, template.constants, template.optional):
         for given in group:
-            found[given.symbol] = "Inputs", row
+            result[given.symbol] = "Inputs", row
             row += 1
         row += _GAP
-    found |= {given.symbol: (WAITING, row) for row, given in enumerate(template.waiting, HEADER_ROW + 1)}
+    result |= {given.symbol: (WAITING, row) for row, given in enumerate(template.waiting, HEADER_ROW + 1)}
     read = () if template.record is None else template.record.read
-    found |= {each.symbol: (RECORD, row) for row, each in enumerate(read, HEADER_ROW + 1)}
+    result |= {each.symbol: (RECORD, row) for row, each in enumerate(read, HEADER_ROW + 1)}
     if template.tests is not None:
         first, scatter = rows_of_tests(template.tests)
-        found |= {each.symbol: (TESTS, row) for row, each in enumerate(template.tests.read, first)}
-        found |= {each.symbol: (TESTS, row) for row, each in enumerate(template.tests.scatter, scatter)}
+        result |= {each.symbol: (TESTS, row) for row, each in enumerate(template.tests.read, first)}
+        result |= {each.symbol: (TESTS, row) for row, each in enumerate(template.tests.scatter, scatter)}
     row = HEADER_ROW + 1
     for section in template.sections:
         for equation in section.equations:
             row += 1
-            found[equation.symbol] = "Model", row
+            result[equation.symbol] = "Model", row
         row += 1
     for row, reading in enumerate(template.evidence, HEADER_ROW + 1):
         if reading.named:
-            found[reading.named] = "Evidence", row
-    return found
+            result[reading.named] = "Evidence", row
+    return result
 
 
 def rows_of_tests(tests: TestTable) -> tuple[int, int]:

@@ -153,8 +153,8 @@ def test_a_changed_model_draws_what_it_was_given(crash):
 def test_files_of_a_changed_model_say_and_hold_the_change(crash, tmp_path):
     run = crash.with_(nissan_weight=xlmc.Uniform(3_000, 3_100)).frozen("Chevrolet weight").simulate(20_000, seed=1)
     for path in (run.save(tmp_path / "a.xlsx"), run.keep(tmp_path / "a.xlmcrun")):
-        found = xlmc.replay(path)
-        assert found.identical
+        result = xlmc.replay(path)
+        assert result.identical
     words = xlmc.open_run(tmp_path / "a.xlmcrun")._run.changed_from.sentence
     assert "Nissan weight Uniform(3000, 3100); Chevrolet weight frozen" in words
     again = xlmc.load(tmp_path / "a.xlsx")
@@ -252,6 +252,6 @@ def test_studies_have_the_names_of_the_commands(tmp_path):
 
 def test_steps_are_told_by_either_name_of_the_argument(book):
     steps = {"tell": [], "told": []}
-    for name, found in steps.items():
-        xlmc.compare(book, book, trials=1_000, seed=1, causes=False, **{name: found.append})
+    for name, result in steps.items():
+        xlmc.compare(book, book, trials=1_000, seed=1, causes=False, **{name: result.append})
     assert steps["tell"] == steps["told"] != []

@@ -48,28 +48,28 @@ STUDIES = {
 
 @pytest.fixture(scope="module", params=STUDIES)
 def study(request, model):
-    make, said = STUDIES[request.param]
-    return make(model), said
+    make, message = STUDIES[request.param]
+    return make(model), message
 
 
 def test_it_prints_itself_in_sentences(study):
-    found, said = study
-    assert said in repr(found)
-    assert " object at 0x" not in repr(found)
-    assert len(repr(found)) < 6000
+    result, message = study
+    assert message in repr(result)
+    assert " object at 0x" not in repr(result)
+    assert len(repr(result)) < 6000
 
 
 def test_a_notebook_shows_its_tables(study):
-    found, said = study
-    assert said in found._repr_html_()
-    assert "<table" in found._repr_html_()
+    result, message = study
+    assert message in result._repr_html_()
+    assert "<table" in result._repr_html_()
 
 
 def test_it_is_saved_as_its_command_saves_it(study, tmp_path):
-    found, said = study
-    assert said in found.save(tmp_path / "found.html").read_text(encoding="utf-8")
-    assert json.loads(found.save(tmp_path / "found.json").read_text(encoding="utf-8"))
-    assert found.save(tmp_path / "found.xlsx").stat().st_size > 1000
+    result, message = study
+    assert message in result.save(tmp_path / "found.html").read_text(encoding="utf-8")
+    assert json.loads(result.save(tmp_path / "found.json").read_text(encoding="utf-8"))
+    assert result.save(tmp_path / "found.xlsx").stat().st_size > 1000
 
 
 def test_what_was_studied_is_never_replaced(model):
@@ -95,6 +95,6 @@ def test_numbers_have_the_style_of_the_workbook(tmp_path, book):
         sheet.append(row)
     sheet.add_table(Table(displayName="xlmc_settings", ref="A1:B2"))
     made.save(tmp_path / "styled.xlsx")
-    found = xlmc.decide(xlmc.load(tmp_path / "styled.xlsx"), trials=2000)
-    assert "2.000 trials" in repr(found)
-    assert "2.000 trials" in found._repr_html_()
+    result = xlmc.decide(xlmc.load(tmp_path / "styled.xlsx"), trials=2000)
+    assert "2.000 trials" in repr(result)
+    assert "2.000 trials" in result._repr_html_()

@@ -43,17 +43,17 @@ def folder(tmp_path):
 def test_cells_and_shapes_are_counted(folder):
     from conformance import Status, check_folder
 
-    found = check_folder(folder)
-    assert {name: len(cells) for name, cells in found.books.items()} == {
+    result = check_folder(folder)
+    assert {name: len(cells) for name, cells in result.books.items()} == {
         "good.xlsx": 3,
         "mixed.xlsx": 4,
         "locked.xlsx": 1,
     }
-    assert found.damaged == ["broken.xlsx", "spoiled.xlsx"]
-    assert found.cell_share() == 5 / 8
-    assert found.cell_share(Status.DIFFERING) == 1 / 8
-    assert found.shape_share() == 2 / 5  # good A*2 and SUM; A*2 of the mixed book has a cell that differs
-    assert sorted(found.book_shares()) == [0.0, 0.5, 1.0]
+    assert result.damaged == ["broken.xlsx", "spoiled.xlsx"]
+    assert result.cell_share() == 5 / 8
+    assert result.cell_share(Status.DIFFERING) == 1 / 8
+    assert result.shape_share() == 2 / 5  # good A*2 and SUM; A*2 of the mixed book has a cell that differs
+    assert sorted(result.book_shares()) == [0.0, 0.5, 1.0]
 
 
 def test_a_list_of_sizes_counts_a_refused_book(folder):

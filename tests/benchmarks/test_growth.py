@@ -27,15 +27,15 @@ def results(tmp_path_factory, at_hand):
 
 
 def test_a_series_that_is_not_measured_keeps_its_points(results):
-    found = json.loads((results / "growth.json").read_text(encoding="utf-8"))["found"]
-    assert list(found) == ["trials", "forecasts"]
-    assert list(found["forecasts"]) == ["numpy"]
-    for points in found["forecasts"].values():
+    result = json.loads((results / "growth.json").read_text(encoding="utf-8"))["found"]
+    assert list(result) == ["trials", "forecasts"]
+    assert list(result["forecasts"]) == ["numpy"]
+    for points in result["forecasts"].values():
         assert [point["size"] for point in points] == [1]
         assert all(point[column] > 0 for point in points for column in growth.COLUMNS)
-    assert list(found["trials"]) == ["numpy"]
-    assert [point["size"] for point in found["trials"]["numpy"]] == [1000]
-    assert found["trials"]["numpy"][0]["run"] > 0
+    assert list(result["trials"]) == ["numpy"]
+    assert [point["size"] for point in result["trials"]["numpy"]] == [1000]
+    assert result["trials"]["numpy"][0]["run"] > 0
     assert (results / "growth.png").read_bytes().startswith(b"\x89PNG")
 
 

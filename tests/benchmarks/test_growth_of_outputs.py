@@ -30,14 +30,14 @@ def test_the_book_has_what_was_asked_for(tmp_path, rejected):
 def test_a_point_has_every_step(tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(growth, "MIDDLE", {"assumptions": 3, "forecasts": 1, "cells": 10, "trials": 200, "rejected": 1})
     steps = [step for step in growth.STEPS if step != "report"]
-    found = growth.measure({"trials": [200], "cells": [10]}, tmp_path, 300.0, steps=steps)
-    [point] = found["trials"]
+    result = growth.measure({"trials": [200], "cells": [10]}, tmp_path, 300.0, steps=steps)
+    [point] = result["trials"]
     assert "report" not in point
     assert all(point[step]["seconds"] >= 0.0 for step in steps)
     assert point["accepted"] == point["trials"] == 200
-    assert {**found["cells"][0], "size": 200} == point  # the middle point is measured once
+    assert {**result["cells"][0], "size": 200} == point  # the middle point is measured once
     assert not list(tmp_path.iterdir())
-    lines = growth.table(found).splitlines()
+    lines = growth.table(result).splitlines()
     assert lines[0].startswith("| trials | load | check |")
     assert lines[2].startswith("| 200 |")
 

@@ -26,12 +26,12 @@ def drawn(path, rows):
 @pytest.fixture(scope="module")
 def marches(tmp_path_factory):
     folder = tmp_path_factory.mktemp("marches")
-    found = {}
+    result = {}
     for cells in CELLS:
         path = folder / f"{cells}.xlsx"
         books.write_march(path, cells)
-        found[cells] = drawn(path, books.MARCH)
-    return found
+        result[cells] = drawn(path, books.MARCH)
+    return result
 
 
 @pytest.mark.parametrize("search", hand_written_march.SEARCHES)
@@ -53,15 +53,15 @@ def test_time_steps_in_c(marches, library, cells, search):
 @pytest.mark.parametrize("search", hand_written_march.SEARCHES)
 def test_drawn_answers_of_time_steps_are_of_one_distribution(library, search):
     n, chunk = 20_001, 1_024
-    for found in (
+    for result in (
         hand_written_march.simulate(n, 1, chunk, 100, search),
         hand_c.March(library, 100, search).simulate(n, 1, chunk),
     ):
-        assert found.shape == (1, n)
+        assert result.shape == (1, n)
         centred = hand_written_march.simulate(n, 2, chunk, 100, search)
         error = centred.std() * np.sqrt(2 / n)
-        assert abs(found.mean() - centred.mean()) < 5 * error
-        assert found.std() == pytest.approx(centred.std(), rel=0.05)
+        assert abs(result.mean() - centred.mean()) < 5 * error
+        assert result.std() == pytest.approx(centred.std(), rel=0.05)
 
 
 def test_both_searches_find_every_row_of_the_road():
@@ -84,9 +84,9 @@ def test_powers_and_the_wide_book(name, tmp_path, monkeypatch):
     else:
         books.make_books(tmp_path, [name])
     inputs, truth = drawn(path, books.POWERS if name == "powers" else books.wide_inputs(assumptions))
-    found = hand_written_plain.BOOKS[name].kernel(TRIALS)(inputs)
-    assert found.shape == truth.shape
-    np.testing.assert_allclose(found, truth, rtol=1e-12)
+    result = hand_written_plain.BOOKS[name].kernel(TRIALS)(inputs)
+    assert result.shape == truth.shape
+    np.testing.assert_allclose(result, truth, rtol=1e-12)
 
 
 def test_every_power_cell_is_needed(tmp_path):

@@ -66,15 +66,15 @@ def test_the_loop_with_sine_and_cosine_of_the_c_library(monkeypatch):
     given = inputs(hand_written, 1_501)
     expected = hand_written.KERNELS["plain"](0)(given.copy())
     assert expected.shape[1] > 20
-    found = numba_evaluate(hand_numba.CASE_KERNELS["libm"]().py_func, 4, given)
-    np.testing.assert_allclose(found, expected, rtol=1e-12)
+    result = numba_evaluate(hand_numba.CASE_KERNELS["libm"]().py_func, 4, given)
+    np.testing.assert_allclose(result, expected, rtol=1e-12)
 
 
 def test_numba_makes_the_runs_of_numpy(case_in_numba):
     """The same draws, so the same accepted trials, also of a part of a chunk."""
     _, expected = hand_written.simulate(50_001, 3, 4_096, "plain")
-    found = hand_numba.simulate(case_in_numba, 4, hand_written.LOW, hand_written.HIGH, 50_001, 3, 4_096)
-    np.testing.assert_allclose(found, expected, rtol=1e-12)
+    result = hand_numba.simulate(case_in_numba, 4, hand_written.LOW, hand_written.HIGH, 50_001, 3, 4_096)
+    np.testing.assert_allclose(result, expected, rtol=1e-12)
 
 
 def test_c_accepts_as_many_as_the_reference(case_in_c):
@@ -118,5 +118,5 @@ def test_skid_runs_agree(skid_in_c, skid_in_numba):
 def test_polynomial_sine_and_cosine(x):
     """2 ulp of the value, or of the cancellation that reducing a large angle leaves."""
     sine, cosine = hand_numba._sincos_polynomial(x)
-    for found, expected in ((sine, math.sin(x)), (cosine, math.cos(x))):
-        assert found == pytest.approx(expected, rel=5e-16, abs=1e-20 * (1 + abs(x)))
+    for result, expected in ((sine, math.sin(x)), (cosine, math.cos(x))):
+        assert result == pytest.approx(expected, rel=5e-16, abs=1e-20 * (1 + abs(x)))

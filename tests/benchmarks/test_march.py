@@ -57,9 +57,9 @@ def test_the_skid_sheet_is_what_is_written_by_hand(tmp_path):
     low, high = hand_written_skid.LOW[:, None], hand_written_skid.HIGH[:, None]
     inputs = low + (high - low) * np.random.default_rng(3).random((3, 500))
     columns = {name: column for (name, *_), column in zip(books.SKID, inputs, strict=True)}
-    found = model.function(columns)["Speed, mph"]
+    result = model.function(columns)["Speed, mph"]
     for evaluate, _ in hand_written_skid.KERNELS.values():
-        np.testing.assert_allclose(found, evaluate(inputs.copy())[0], rtol=1e-13)
+        np.testing.assert_allclose(result, evaluate(inputs.copy())[0], rtol=1e-13)
     assert [a.parameters for a in model.assumptions] == [{"low": lo, "high": hi} for *_, lo, hi in books.SKID]
 
 

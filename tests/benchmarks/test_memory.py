@@ -22,8 +22,8 @@ def test_ratios_are_of_the_longest_run_to_the_shortest(monkeypatch):
         return {"trials": trials, "accepted": trials // 2, "seconds": next(seconds), "before": 100, "peak": 3 * trials}
 
     monkeypatch.setattr(memory, "_measured", measured)
-    found = memory.measure((100, 1_000), "jit", 2, rounds=3)
+    result = memory.measure((100, 1_000), "jit", 2, rounds=3)
     assert asked == [(100, 10, "jit", 2), (1_000, 1, "jit", 2)] * 3
-    assert [run["seconds"] for run in found["runs"]] == [2.0, 30.0]
-    assert found["cost"] == pytest.approx(1.1)
-    assert found["memory"] == 10.0
+    assert [run["seconds"] for run in result["runs"]] == [2.0, 30.0]
+    assert result["cost"] == pytest.approx(1.1)
+    assert result["memory"] == 10.0

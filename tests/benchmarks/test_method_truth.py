@@ -45,15 +45,15 @@ SOUND = {"stated": 1_000, "true": 1_000, "ratio": 1.0, "seconds": 1.0}
     ],
 )
 def test_what_misses_a_bar(changed, recommended, message):
-    found = {"b": {"recommended": recommended, "needs": {"mc": {**SOUND, **changed}, "lhs": SOUND}}}
-    assert misses(found) == message
+    result = {"b": {"recommended": recommended, "needs": {"mc": {**SOUND, **changed}, "lhs": SOUND}}}
+    assert misses(result) == message
 
 
 def test_a_tenth_of_a_second_does_not_matter_and_other_methods_are_only_named():
     needs = {"mc": {**SOUND, "seconds": 0.1}, "lhs": {**SOUND, "ratio": 3.0, "stated": 3_000, "seconds": 0.01}}
-    found = {"b": {"recommended": "mc", "needs": needs}}
-    assert misses(found) == []
-    assert misstated(found) == ["b: lhs is said to need 3,000 trials, and needs 1,000"]
+    result = {"b": {"recommended": "mc", "needs": needs}}
+    assert misses(result) == []
+    assert misstated(result) == ["b: lhs is said to need 3,000 trials, and needs 1,000"]
 
 
 def test_the_need_of_a_percentile_is_that_of_its_density():

@@ -45,10 +45,10 @@ CHANGES = {
 
 
 def test_a_mutant_is_one_change_of_what_is_run():
-    found = list(mutants.mutants(Path("a.py"), SOURCE))
-    assert {(each.old, each.new) for each in found} == CHANGES
-    assert len(found) == len(CHANGES)
-    for each in found:
+    result = list(mutants.mutants(Path("a.py"), SOURCE))
+    assert {(each.old, each.new) for each in result} == CHANGES
+    assert len(result) == len(CHANGES)
+    for each in result:
         changed = each.text(SOURCE)
         ast.parse(changed)
         differing = [

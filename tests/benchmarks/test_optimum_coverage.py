@@ -12,13 +12,13 @@ import xlmc
 def test_known_optima_are_found(name, tmp_path):
     problem, path = PROBLEMS[name], tmp_path / "book.xlsx"
     write(problem, path)
-    found = xlmc.load(path).optimise(
+    result = xlmc.load(path).optimise(
         maximise=problem.goal, subject_to=problem.requirements, trials=20_000, seed=4, runs=60
     )
-    assert problem.optimum - problem.true(found.values) <= found.indifference
-    assert found.confidence >= 0.8
-    assert abs(found.found.value - problem.true(found.values)) < 4.5 * found.found.error
-    assert found.trials < 100 * 20_000
+    assert problem.optimum - problem.true(result.values) <= result.indifference
+    assert result.confidence >= 0.8
+    assert abs(result.estimate.value - problem.true(result.values)) < 4.5 * result.estimate.error
+    assert result.trials < 100 * 20_000
 
 
 def test_a_stated_confidence_holds(tmp_path):

@@ -30,11 +30,11 @@ def test_what_is_beyond_a_bar_is_said(name, workbooks, report, expected):
 
 
 def test_the_table_has_the_pages_of_each_font_and_sheet():
-    found = {
+    result = {
         "skid": Pages((Counter({"of the book": 4, "Results": 1}), Counter({"of the book": 5, "Results": 1})), 6, 7)
     }
-    assert table(found).splitlines()[2:] == ["| skid | 5 | 6 | 6 | 7 |"]
-    assert table(found, sheets=True).splitlines()[3:] == ["| … of the book | 4 | 5 | | |", "| … Results | 1 | 1 | | |"]
+    assert table(result).splitlines()[2:] == ["| skid | 5 | 6 | 6 | 7 |"]
+    assert table(result, sheets=True).splitlines()[3:] == ["| … of the book | 4 | 5 | | |", "| … Results | 1 | 1 | | |"]
 
 
 def test_feet_say_whose_sheet_a_page_is(monkeypatch, tmp_path):

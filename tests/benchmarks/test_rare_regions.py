@@ -20,9 +20,9 @@ def bench():
 def test_a_run_is_wrong_in_silence_where_it_misses_by_three_half_widths(bench):
     near, far = bench.Run(1.0, 0.9, 1.1, False, 100), bench.Run(0.5, 0.49, 0.51, False, 300)
     warned = far._replace(warned=True)
-    found = bench.judged([near, far, warned], 1.0)
-    assert found == bench.Judged(runs=3, warned=1, held=1, wrong=1, width=pytest.approx(0.02), work=300.0)
-    assert found.silent == 2
+    result = bench.judged([near, far, warned], 1.0)
+    assert result == bench.Judged(runs=3, warned=1, held=1, wrong=1, width=pytest.approx(0.02), work=300.0)
+    assert result.silent == 2
 
 
 def test_the_bar_names_what_misses_it(bench):

@@ -33,6 +33,6 @@ def test_the_bar_names_what_misses_it(bench):
 def test_every_book_has_a_layer_that_is_solved(bench):
     for name, book in bench.THIN.items():
         model = book.model
-        found = search_space_of(model, LimitStateFunction(model, np.random.default_rng(3)), np.random.default_rng(4))
-        assert isinstance(found, Layered), name
-        assert len(found.layers) == (2 if name == "two layers" else 1)
+        result = search_space_of(model, LimitStateFunction(model, np.random.default_rng(3)), np.random.default_rng(4))
+        assert isinstance(result, Layered), name
+        assert len(result.layers) == (2 if name == "two layers" else 1)

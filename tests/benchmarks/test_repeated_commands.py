@@ -30,14 +30,14 @@ CASES = {
 
 @pytest.mark.parametrize(("case", "parts"), CASES.values(), ids=CASES)
 def test_the_recorded_command_gives_the_fingerprint(case, parts):
-    found = repeated(case)
-    assert found is not None
-    assert found["same"], found["command"]
+    result = repeated(case)
+    assert result is not None
+    assert result["same"], result["command"]
     for part in parts:
-        assert part in found["command"]
+        assert part in result["command"]
 
 
 def test_the_committed_runs_all_gave_it():
-    found = json.loads(RESULTS.read_text(encoding="utf-8"))
-    assert (found["runs"], found["same"], found["other"]) == (200, 200, [])
-    assert set(found["kinds"]) == set(KINDS)
+    result = json.loads(RESULTS.read_text(encoding="utf-8"))
+    assert (result["runs"], result["same"], result["other"]) == (200, 200, [])
+    assert set(result["kinds"]) == set(KINDS)

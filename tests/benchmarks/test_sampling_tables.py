@@ -39,12 +39,12 @@ def page_table(page, name):
 
 
 def test_the_committed_table_meets_the_bar(coverage):
-    found = json.loads(coverage.RESULTS.read_text(encoding="utf-8"))
-    cells = [coverage.Cell(*each) for each in found["cells"]]
-    assert found["runs"] == 4_000
+    result = json.loads(coverage.RESULTS.read_text(encoding="utf-8"))
+    cells = [coverage.Cell(*each) for each in result["cells"]]
+    assert result["runs"] == 4_000
     assert {(cell.problem, cell.method) for cell in cells} == {(p, m) for p in coverage.PROBLEMS for m in METHODS}
-    assert coverage.faults(cells, found["runs"]) == []
-    assert page_table(coverage.PAGE, "coverage") == coverage.table(found)
+    assert coverage.faults(cells, result["runs"]) == []
+    assert page_table(coverage.PAGE, "coverage") == coverage.table(result)
 
 
 @pytest.fixture(scope="module")
@@ -53,11 +53,11 @@ def tails():
 
 
 def test_the_committed_table_of_tails_meets_its_bar(tails):
-    found = [tails.Cell(*each) for each in json.loads(tails.RESULTS.read_text(encoding="utf-8"))["cells"]]
-    assert {(cell.problem, cell.method) for cell in found} == {(p, m) for p in tails.PROBLEMS for m in tails.SAMPLING}
-    assert len(found) == len(tails.PROBLEMS) * len(tails.SAMPLING) * len(tails.TRIALS)
-    assert tails.faults(found) == []
-    assert page_table(tails.PAGE, "tail-coverage") == tails.tables(found)
+    result = [tails.Cell(*each) for each in json.loads(tails.RESULTS.read_text(encoding="utf-8"))["cells"]]
+    assert {(cell.problem, cell.method) for cell in result} == {(p, m) for p in tails.PROBLEMS for m in tails.SAMPLING}
+    assert len(result) == len(tails.PROBLEMS) * len(tails.SAMPLING) * len(tails.TRIALS)
+    assert tails.faults(result) == []
+    assert page_table(tails.PAGE, "tail-coverage") == tails.tables(result)
 
 
 def test_the_bar_of_tails_can_be_missed(tails):
@@ -76,9 +76,9 @@ def test_the_bar_of_tails_can_be_missed(tails):
 @pytest.mark.parametrize("method", ["mc", "lhs", "sobol"])
 def test_many_runs_at_once_have_the_numbers_of_each_alone(tails, method):
     """`measure` compares the first run with xlmc's own functions, and ends with an error where they differ."""
-    found = tails.measure(method, 1_000, range(40, 42))
-    assert found.shape == (len(tails.PROBLEMS), 2, 6, 4)
-    for cell in tails.cells(method, 1_000, found):
+    result = tails.measure(method, 1_000, range(40, 42))
+    assert result.shape == (len(tails.PROBLEMS), 2, 6, 4)
+    for cell in tails.cells(method, 1_000, result):
         assert cell.runs == 2
 
 
@@ -117,12 +117,12 @@ def test_the_truths_are_true(coverage, name, trials):
 
 
 def test_the_committed_gains_meet_the_bar(sobol):
-    found = json.loads(sobol.RESULTS.read_text(encoding="utf-8"))
-    assert found["trials"] == 131_072
+    result = json.loads(sobol.RESULTS.read_text(encoding="utf-8"))
+    assert result["trials"] == 131_072
     for case, least in sobol.LEAST.items():
-        ratios, _ = found["gains"][case]["sobol"]
+        ratios, _ = result["gains"][case]["sobol"]
         assert ratios[-1] >= least
-    assert page_table(sobol.PAGE, "sobol") == sobol.table(found)
+    assert page_table(sobol.PAGE, "sobol") == sobol.table(result)
 
 
 def test_gains_of_known_variances(sobol, monkeypatch):

@@ -53,8 +53,8 @@ def test_the_two_run_in_turn_and_a_first_run_does_not_count(tmp_path, monkeypatc
         return next(times)
 
     monkeypatch.setattr(two_versions, "processor_time", measure)
-    found = two_versions.ratio((tmp_path / "new", ()), (tmp_path / "old", ()), 3, tmp_path)
-    assert found == (2.0, 2.0, 0.75)
+    result = two_versions.ratio((tmp_path / "new", ()), (tmp_path / "old", ()), 3, tmp_path)
+    assert result == (2.0, 2.0, 0.75)
     assert asked == ["new", "old"] * 4
 
 
@@ -62,7 +62,7 @@ def test_every_command_of_every_book_has_a_row(capsys, monkeypatch):
     books = [str(two_versions.CASE_STUDY), str(two_versions.CASE_STUDY.with_name("skid-100-ft.xlsx"))]
     monkeypatch.setattr(two_versions, "processor_time", lambda tree, arguments, folder: float(len(arguments)))
     monkeypatch.setattr(two_versions.machine, "describe", dict)
-    monkeypatch.setattr(two_versions.machine, "sentence", lambda found: "A machine.")
+    monkeypatch.setattr(two_versions.machine, "sentence", lambda result: "A machine.")
     two_versions.main([os.fspath(two_versions.ROOT), "--books", *books, "--pairs", "1"])
     rows = [line for line in capsys.readouterr().out.splitlines() if "| 1.000 |" in line]
     assert [row.split("|")[1].strip() for row in rows] == ["intersection", "intersection", "skid-100-ft", "skid-100-ft"]

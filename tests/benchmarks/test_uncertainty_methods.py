@@ -19,9 +19,9 @@ def test_the_committed_errors_are_those_of_theory():
 
 
 def test_the_page_and_the_results_are_of_one_run():
-    found = json.loads((ROOT / "benchmarks" / "results" / "uncertainty-methods.json").read_text(encoding="utf-8"))[
+    result = json.loads((ROOT / "benchmarks" / "results" / "uncertainty-methods.json").read_text(encoding="utf-8"))[
         "found"
     ]
-    assert f"Reference: {found['reference']['trials']:,} trials" in PAGE
-    for message in found["recommendation"]:
+    assert f"Reference: {result['reference']['trials']:,} trials" in PAGE
+    for message in result["recommendation"]:
         assert message in PAGE

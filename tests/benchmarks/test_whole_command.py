@@ -16,7 +16,7 @@ NUMBER = re.compile(rb"<v>([^<]*\.[^<]*)</v>")
 
 def _as_xlsxwriter_writes(part):
     """Numbers with 13 digits, and lines of charts that are not said to be straight."""
-    thirteen = NUMBER.sub(lambda found: b"<v>%.13G</v>" % float(found[1]), part)
+    thirteen = NUMBER.sub(lambda result: b"<v>%.13G</v>" % float(result[1]), part)
     return thirteen.replace(b'<c:smooth val="0"/>', b"")
 
 

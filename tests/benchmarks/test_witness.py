@@ -25,10 +25,10 @@ def test_a_book_gives_what_was_recorded(recorded, name, first):
     `python benchmarks/witness.py --record` writes the record anew where a change of numbers is meant.
     """
     bits = recorded["made on"] == witness.features()
-    found = witness.witnessed(BOOKS[name], runs=witness.RUNS[first::2])
-    assert ("parts" in found) == (first == 0)
-    before = {of: recorded["books"][name][of] for of in found}
-    assert list(witness.differences(before, found, bits=bits)) == []
+    result = witness.witnessed(BOOKS[name], runs=witness.RUNS[first::2])
+    assert ("parts" in result) == (first == 0)
+    before = {of: recorded["books"][name][of] for of in result}
+    assert list(witness.differences(before, result, bits=bits)) == []
 
 
 def _changed(book, change):

@@ -41,9 +41,9 @@ DRAWN = {
 @pytest.mark.parametrize(("cells", "mean", "deviation"), DRAWN.values(), ids=DRAWN)
 def test_draws_have_these_moments(xlmc, book, cells, mean, deviation):
     assert xlmc("simulate", book(**cells), "-n", 40_000, "-o", "run.json").code == 0
-    found = json.loads(Path("run.json").read_text(encoding="utf-8"))["forecasts"][0]["statistics"]
-    assert found["mean"]["value"] == pytest.approx(mean, abs=4 * found["mean"]["error"])
-    spread = found["standard_deviation"]
+    result = json.loads(Path("run.json").read_text(encoding="utf-8"))["forecasts"][0]["statistics"]
+    assert result["mean"]["value"] == pytest.approx(mean, abs=4 * result["mean"]["error"])
+    spread = result["standard_deviation"]
     assert spread["value"] == pytest.approx(deviation, abs=4 * spread["error"])
 
 
@@ -61,11 +61,11 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize(("cells", "said"), MISTAKES.values(), ids=MISTAKES)
-def test_a_mistake_names_its_cell_and_the_cure(xlmc, book, cells, said):
+@pytest.mark.parametrize(("cells", "message"), MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_names_its_cell_and_the_cure(xlmc, book, cells, message):
     outcome = xlmc("check", book(**cells))
     assert outcome.code == 2
-    assert all(each in outcome.err for each in said), outcome.err
+    assert all(each in outcome.err for each in message), outcome.err
 
 
 def test_a_percentage_below_one_is_pointed_out(xlmc, book):

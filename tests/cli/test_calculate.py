@@ -57,9 +57,9 @@ def parts(path):
 
 def without_values(path, new):
     """The workbook as if no program had calculated it."""
-    found = parts(path)
+    result = parts(path)
     with zipfile.ZipFile(new, "w") as package:
-        for name, xml in found.items():
+        for name, xml in result.items():
             if name.startswith("xl/worksheets/sheet"):
                 xml = re.sub(
                     rb"(<c\b[^>]*?)( t=\"\w+\")?([^>]*>)(<f\b[^>]*?(?:/>|>[^<]*</f>))<v>[^<]*</v>", rb"\1\3\4", xml
@@ -70,10 +70,10 @@ def without_values(path, new):
 
 def test_the_copy_has_values_where_openpyxl_showed_none(xlmc, book):
     outcome = xlmc("calculate", book, "-o", "copy.xlsx")
-    found = openpyxl.load_workbook("copy.xlsx", data_only=True)["S"]
-    assert [found[f"A{row}"].value for row in (1, 2, 4, 5, 9, 10)] == [2, 6, "#DIV/0!", True, None, 7]
+    result = openpyxl.load_workbook("copy.xlsx", data_only=True)["S"]
+    assert [result[f"A{row}"].value for row in (1, 2, 4, 5, 9, 10)] == [2, 6, "#DIV/0!", True, None, 7]
     assert excel.load("copy.xlsx")["S!A3"] == "about 6\r_x0041_"
-    assert [found[f"C{row}"].value for row in (1, 2, 3)] == [2, 4, "#DIV/0!"]
+    assert [result[f"C{row}"].value for row in (1, 2, 3)] == [2, 4, "#DIV/0!"]
     assert openpyxl.load_workbook("copy.xlsx")["S"]["A2"].value == "=A1*3"
     assert openpyxl.load_workbook("copy.xlsx")["S"]["A2"].font.bold
     assert outcome.code == 1
@@ -134,12 +134,12 @@ def test_what_excel_saved_stays(xlmc, name):
 def test_a_change_reaches_what_depends_on_it_and_nothing_else(xlmc, book):
     xlmc("calculate", book, "-o", "first.xlsx", "--volatile")
     outcome = xlmc("calculate", "first.xlsx", "--set", "S!A1=5", "-o", "copy.xlsx")
-    found = excel.load("copy.xlsx")
-    assert [found[f"S!A{row}"] for row in (1, 2, 4, 10)] == [5.0, 15.0, ErrorCode.DIV0, 16.0]
-    assert found["S!A8"] == excel.load("first.xlsx")["S!A8"]  # NOW does not depend on it
-    assert [found[f"S!C{row}"] for row in (1, 2, 3)] == [5.0, 10.0, ErrorCode.DIV0]
+    result = excel.load("copy.xlsx")
+    assert [result[f"S!A{row}"] for row in (1, 2, 4, 10)] == [5.0, 15.0, ErrorCode.DIV0, 16.0]
+    assert result["S!A8"] == excel.load("first.xlsx")["S!A8"]  # NOW does not depend on it
+    assert [result[f"S!C{row}"] for row in (1, 2, 3)] == [5.0, 10.0, ErrorCode.DIV0]
     assert outcome.code == 1  # NOSUCHFUNCTION(A1)
-    assert found["S!A6"] is None
+    assert result["S!A6"] is None
 
 
 def test_what_cannot_be_computed_keeps_its_value_unless_a_change_reaches_it(xlmc, tmp_path, workbook_file):
@@ -167,19 +167,20 @@ def workbook_file(tmp_path):
             inside = f"<f>{formula[1:]}</f>" if formula else ""
             rows.setdefault(int(place[1:]), []).append((place, f'<c r="{place}">{inside}<v>{value}</v></c>'))
         data = "".join(
-            f'<row r="{row}">{"".join(xml for _, xml in sorted(found))}</row>' for row, found in sorted(rows.items())
+            f'<row r="{row}">{"".join(xml for _, xml in sorted(results))}</row>'
+            for row, results in sorted(rows.items())
         )
         made = openpyxl.Workbook()
         made.active.title = "S"
         made.defined_names.update({name: DefinedName(name, attr_text=text) for name, text in names.items()})
         made.save(tmp_path / "empty.xlsx")
-        found = parts(tmp_path / "empty.xlsx")
-        xml = found["xl/worksheets/sheet1.xml"].decode()
-        found["xl/worksheets/sheet1.xml"] = re.sub(
+        result = parts(tmp_path / "empty.xlsx")
+        xml = result["xl/worksheets/sheet1.xml"].decode()
+        result["xl/worksheets/sheet1.xml"] = re.sub(
             r"<sheetData ?/>|<sheetData></sheetData>", f"<sheetData>{data}</sheetData>", xml
         ).encode()
         with zipfile.ZipFile(tmp_path / "saved.xlsx", "w") as package:
-            for name, content in found.items():
+            for name, content in result.items():
                 package.writestr(name, content)
         return tmp_path / "saved.xlsx"
 
@@ -211,8 +212,8 @@ def test_each_row_of_values_is_calculated_on_its_own(xlmc, book, tmp_path):
 def test_a_list_of_cells_and_values_is_one_row(xlmc, book, tmp_path):
     (tmp_path / "v.csv").write_text("Cell,Value\nS!A1,4\nOther!B1,text\n", encoding="utf-8")
     xlmc("calculate", book, "--values", "v.csv", "-o", "copy.xlsx")
-    found = excel.load("copy.xlsx")
-    assert (found["S!A1"], found["S!A2"], found["Other!B1"]) == (4.0, 12.0, "text")
+    result = excel.load("copy.xlsx")
+    assert (result["S!A1"], result["S!A2"], result["Other!B1"]) == (4.0, 12.0, "text")
 
 
 def test_volatile_functions_are_computed_when_asked(xlmc, workbook_file):
@@ -222,11 +223,11 @@ def test_volatile_functions_are_computed_when_asked(xlmc, workbook_file):
     assert xlmc("calculate", path, "-o", "same.xlsx").code == 0
     assert Path("same.xlsx").read_bytes() == path.read_bytes()
     assert xlmc("calculate", path, "--volatile", "-o", "new.xlsx").code == 0
-    found = excel.load("new.xlsx")
-    assert 0 <= found["S!A1"] < 1
-    assert found["S!A2"] == 2 * found["S!A1"]
-    assert found["S!A3"] == 3.0
-    assert 0 <= found["S!A4"] < 1
+    result = excel.load("new.xlsx")
+    assert 0 <= result["S!A1"] < 1
+    assert result["S!A2"] == 2 * result["S!A1"]
+    assert result["S!A3"] == 3.0
+    assert 0 <= result["S!A4"] < 1
 
 
 @pytest.mark.parametrize(
@@ -237,8 +238,8 @@ def test_volatile_functions_are_computed_when_asked(xlmc, workbook_file):
 def test_only_a_field_that_is_left_blank_empties_its_cell(xlmc, book, tmp_path, text, kept):
     (tmp_path / "v.csv").write_text(text, encoding="utf-8")
     assert xlmc("calculate", book, "--values", "v.csv", "-o", "copy.xlsx").code == 1  # NOSUCHFUNCTION has no value
-    found = excel.load("copy.xlsx")
-    assert (found["Other!B1"], found["S!A2"]) == (kept, 9.0)
+    result = excel.load("copy.xlsx")
+    assert (result["Other!B1"], result["S!A2"]) == (kept, 9.0)
 
 
 @pytest.mark.parametrize("place", ["S!B:C", "S!B1:C1048576", "Whole"])
@@ -258,21 +259,21 @@ def test_whole_columns_end_with_the_last_filled_row(xlmc, workbook_file, place):
 
 
 @pytest.mark.parametrize(
-    ("typed", "value", "found"),
+    ("typed", "value", "result"),
     [
         ("#DIV/0!", ErrorCode.DIV0, ErrorCode.DIV0),
         ("#n/a", ErrorCode.NA, ErrorCode.NA),
         ("'#N/A", "#N/A", ErrorCode.VALUE),
     ],
 )
-def test_an_error_value_is_typed_as_such(xlmc, book, tmp_path, typed, value, found):
+def test_an_error_value_is_typed_as_such(xlmc, book, tmp_path, typed, value, result):
     (tmp_path / "v.csv").write_text(f"S!A1,#note\n{typed},n\n", encoding="utf-8")
     for given in (["--set", f"S!A1={typed}"], ["--values", "v.csv"]):
         xlmc("calculate", book, *given, "-o", "copy.xlsx", "--overwrite")
         copy = excel.load("copy.xlsx")
-        assert (copy["S!A1"], copy["S!A2"]) == (value, found)
+        assert (copy["S!A1"], copy["S!A2"]) == (value, result)
     rows = json.loads(xlmc("calculate", book, "--values", "v.csv", "--cells", "S!A2", "--json").out)
-    assert rows == [{"S!A1": value if isinstance(value, str) else value.text, "#note": "n", "S!A2": found.text}]
+    assert rows == [{"S!A1": value if isinstance(value, str) else value.text, "#note": "n", "S!A2": result.text}]
 
 
 MISTAKES = {
@@ -342,8 +343,8 @@ def test_a_mistake_is_one_message_and_nothing_is_written(xlmc, book, tmp_path, a
     ],
 )
 def test_a_value_in_csv_has_all_its_digits(value, written):
-    found = _exact(value)
-    assert (found, type(found)) == (written, type(written))
+    result = _exact(value)
+    assert (result, type(result)) == (written, type(written))
 
 
 def test_functions_that_draw_are_not_called_unknown(xlmc, tmp_path):

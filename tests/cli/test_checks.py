@@ -44,11 +44,11 @@ def test_simulate_says_first_which_check_fails_and_which_cell_is_an_error(xlmc, 
     assert "from Model!D11 #DIV/0!: =1/ROUND(B2*100,0)" in " ".join(before.split())
     assert "Statistics of 'r' rest on 19,9" in before
     assert "Accepted" not in after
-    found = json.loads((tmp_path / "case.json").read_text(encoding="utf-8"))
-    assert list(found)[:4] == ["format", "version", "warnings", "checks"]
-    assert found["checks"][0]["holds"] is True
-    assert found["checks"][0]["failed"] > 60
-    assert found["errors"][0]["from"] == "Model!D11 #DIV/0!"
+    result = json.loads((tmp_path / "case.json").read_text(encoding="utf-8"))
+    assert list(result)[:4] == ["format", "version", "warnings", "checks"]
+    assert result["checks"][0]["holds"] is True
+    assert result["checks"][0]["failed"] > 60
+    assert result["errors"][0]["from"] == "Model!D11 #DIV/0!"
     repeated = xlmc("replay", tmp_path / "case-results.xlsx")
     assert repeated.out.splitlines()[1].endswith("(Model!D15): y is large.")
     assert repeated.code == 0  # it is identical, whether or not it may be used

@@ -71,9 +71,9 @@ def test_beyond_is_a_verdict_with_its_cause(xlmc, books):
 
 def test_no_causes_makes_no_further_runs(xlmc, books):
     outcome = xlmc("compare", *books, "--tolerance", "0.1", "--no-causes", "--json", *QUICK)
-    found = json.loads(outcome.out)
-    assert found["runs"] == 2
-    assert "cause" not in found["forecasts"][0]
+    result = json.loads(outcome.out)
+    assert result["runs"] == 2
+    assert "cause" not in result["forecasts"][0]
 
 
 def test_undecided_is_exit_code_1(xlmc, books):
@@ -85,14 +85,14 @@ def test_undecided_is_exit_code_1(xlmc, books):
 def test_json(xlmc, books):
     outcome = xlmc("compare", *books, "--tolerance", "0.1", "--json", *QUICK)
     assert outcome.code == 0
-    found = json.loads(outcome.out)
-    assert found["simpler"] == "plain.xlsx"
-    (speed,) = found["forecasts"]
+    result = json.loads(outcome.out)
+    assert result["simpler"] == "plain.xlsx"
+    (speed,) = result["forecasts"]
     assert speed["verdict"] == "beyond"
     assert speed["cause"]["taken_out"] == [{"kind": "filter", "book": "rich.xlsx", "name": "fast"}]
     mean = speed["mean"]["difference"]
     assert abs(mean["value"] + 0.25) < 4 * mean["error"]
-    assert found["filters_only_in"] == {"rich.xlsx": ["fast"], "plain.xlsx": []}
+    assert result["filters_only_in"] == {"rich.xlsx": ["fast"], "plain.xlsx": []}
 
 
 def test_pairs_and_units(xlmc, tmp_path):
@@ -149,12 +149,12 @@ def test_two_models_of_one_answer(xlmc, tmp_path):
     apart = book(tmp_path / "apart.xlsx", "=2+B3/10")
     outcome = xlmc("compare", first, apart, "--json", *QUICK)
     assert outcome.code == 1
-    found = json.loads(outcome.out)
-    rivals = found["forecasts"][0]["two_models"]
+    result = json.loads(outcome.out)
+    rivals = result["forecasts"][0]["two_models"]
     assert rivals["tells_more"] == "apart.xlsx"
     assert rivals["drawn_only_for"] == {"first.xlsx": ["a"], "apart.xlsx": ["b"]}
     assert (rivals["agreement"], rivals["chance_of_such_a_difference"]) == ("contradict", 0.0)
-    assert "in all 20,000 trials that both accept they differ in one direction" in found["verdict"][0]
+    assert "in all 20,000 trials that both accept they differ in one direction" in result["verdict"][0]
 
 
 def test_whether_a_book_needs_another(xlmc, tmp_path):

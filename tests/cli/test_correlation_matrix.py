@@ -49,10 +49,10 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize(("matrix", "where", "said"), MISTAKES.values(), ids=MISTAKES)
-def test_a_mistake_names_its_cell(xlmc, tmp_path, matrix, where, said):
+@pytest.mark.parametrize(("matrix", "where", "message"), MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_names_its_cell(xlmc, tmp_path, matrix, where, message):
     padded = [[*line, *[None] * (4 - len(line))] for line in matrix]
     outcome = xlmc("check", written(tmp_path / "case.xlsx", padded))
     assert outcome.code == 2
     assert where in outcome.err
-    assert said in outcome.err
+    assert message in outcome.err

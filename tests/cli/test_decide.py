@@ -62,9 +62,9 @@ def test_a_yes_or_no_has_a_probability(xlmc, tmp_path):
 
 
 def test_files_have_the_table_and_the_trend(xlmc, book, tmp_path):
-    sheet, page, found = tmp_path / "found.xlsx", tmp_path / "found.html", tmp_path / "found.json"
+    sheet, page, result = tmp_path / "found.xlsx", tmp_path / "found.html", tmp_path / "found.json"
     given = ["decide", book, "-n", "2000", "--quiet"]
-    outcome = xlmc(*given, "-o", sheet, "-o", page, "-o", found)
+    outcome = xlmc(*given, "-o", sheet, "-o", page, "-o", result)
     assert outcome.code == 0, outcome.err
     made = openpyxl.load_workbook(sheet)["Decisions"]
     rows = [row[:2] for row in made.iter_rows(values_only=True)]
@@ -73,7 +73,7 @@ def test_files_have_the_table_and_the_trend(xlmc, book, tmp_path):
     (chart,) = made._charts
     assert len(chart.series) == 2  # a line for each price
     assert "Order = 60, Price = 5" in page.read_text(encoding="utf-8")
-    written = json.loads(found.read_text(encoding="utf-8"))
+    written = json.loads(result.read_text(encoding="utf-8"))
     assert written.pop("seal")
     assert written == json.loads(xlmc(*given, "--json").out)
     assert [each["values"] for each in written["combinations"][:2]] == [[20, 5], [20, 6]]

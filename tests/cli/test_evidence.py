@@ -51,15 +51,15 @@ def words(path):
 
 
 def test_evidence_that_agrees_is_shown_everywhere_with_what_it_moves(xlmc, short_books, book, tmp_path):
-    page, found, report, kept = (tmp_path / f"book{ending}" for ending in (".html", ".json", ".docx", ".xlmcrun"))
-    outputs = ("--html", page, "--json", found, "--docx", report, "--save-run", kept)
+    page, result, report, kept = (tmp_path / f"book{ending}" for ending in (".html", ".json", ".docx", ".xlmcrun"))
+    outputs = ("--html", page, "--json", result, "--docx", report, "--save-run", kept)
     outcome = xlmc("simulate", book(EDR, VIDEO, OFF), "-n", 20_000, *outputs)
     assert outcome.code == 0, outcome.err
     out = " ".join(outcome.out.split())
     assert "note: Facts!A4: Evidence that is not used, because Use is off: 'damage'" in outcome.err
     assert "The items corroborate each other" in out
     assert "EDR alone, without video" in out
-    data = json.loads(found.read_text(encoding="utf-8"))
+    data = json.loads(result.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(data)
     evidence = data["evidence"]
     assert evidence["verdict"] == "corroborates"
@@ -80,7 +80,7 @@ def test_evidence_that_agrees_is_shown_everywhere_with_what_it_moves(xlmc, short
     ):
         assert message in expected
         assert message in page.read_text(encoding="utf-8")
-    assert "evidence\x1f" not in page.read_text(encoding="utf-8") + found.read_text(encoding="utf-8")
+    assert "evidence\x1f" not in page.read_text(encoding="utf-8") + result.read_text(encoding="utf-8")
     docx = pytest.importorskip("docx")
     paragraphs = [each.text for each in docx.Document(report).paragraphs]
     assert "Evidence, and whether it agrees" in paragraphs
@@ -140,15 +140,15 @@ def test_a_weighted_run_says_so_everywhere_and_leaves_out_what_cannot_weight(xlm
     keep_few_trials(monkeypatch)
     leave_out_fits(monkeypatch)
     path = book([*EDR[:2], 6.5, *EDR[3:]])
-    page, found, rows = (tmp_path / f"book{ending}" for ending in (".html", ".json", ".csv"))
+    page, result, rows = (tmp_path / f"book{ending}" for ending in (".html", ".json", ".csv"))
     kept = tmp_path / "book.xlmcrun"
     outcome = xlmc(
-        "simulate", path, "-n", 5_000, "--html", page, "--json", found, "--extract", rows, "--save-run", kept
+        "simulate", path, "-n", 5_000, "--html", page, "--json", result, "--extract", rows, "--save-run", kept
     )
     out = " ".join(outcome.out.split())
     assert "Each accepted trial counts with the chance that the evidence would keep it (weights)" in out
     assert "Weighted results leave out" in out
-    data = json.loads(found.read_text(encoding="utf-8"))
+    data = json.loads(result.read_text(encoding="utf-8"))
     jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(data)
     assert data["record"]["settings"]["evidence"] == "weights"
     assert data["sensitivity"] is None
@@ -171,12 +171,12 @@ def test_a_weighted_run_says_so_everywhere_and_leaves_out_what_cannot_weight(xlm
 
 def test_the_way_evidence_is_used_is_an_option(xlmc, short_books, book, tmp_path):
     """Before the book's setting, which is none here; a run that was asked for weights says so and repeats."""
-    path, found = book(EDR), tmp_path / "book.json"
+    path, result = book(EDR), tmp_path / "book.json"
     accepted = {}
     for way in ("rejection", "weights", "auto"):
-        outcome = xlmc("simulate", path, "-n", 4_000, "--evidence", way, "--json", found, "--overwrite")
+        outcome = xlmc("simulate", path, "-n", 4_000, "--evidence", way, "--json", result, "--overwrite")
         assert outcome.code == 0, outcome.err
-        data = json.loads(found.read_text(encoding="utf-8"))
+        data = json.loads(result.read_text(encoding="utf-8"))
         accepted[way] = data["accepted"] if "accepted" in data else data["record"]["counts"]["accepted"]
         assert (data["weights"] is not None) == (way == "weights")
         assert way != "weights" or xlmc("replay", tmp_path / "book-results.xlsx").code == 0

@@ -73,8 +73,8 @@ def test_python_gives_the_numbers_of_the_command(xlmc, fed, tmp_path):
     fed("-o", "results.xlsx", "--json", "results.json")
     feeds = {mine: f"{tmp_path}/{theirs}" for mine, theirs in FEEDS.items()}
     run = library.load(tmp_path / "skid-100-ft.xlsx", feeds=feeds).simulate(5_000)
-    found = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["forecasts"]
-    assert found[0]["statistics"]["mean"]["value"] == run[found[0]["name"]].mean.value
+    result = json.loads((tmp_path / "results.json").read_text(encoding="utf-8"))["forecasts"]
+    assert result[0]["statistics"]["mean"]["value"] == run[result[0]["name"]].mean.value
     assert run.model.forecasts[-1].name == "Surface 1 friction"
 
 
@@ -113,8 +113,8 @@ def test_the_workbook_that_is_run_may_be_named_in_a_feed(xlmc, fed):
     assert fed("-o", "plain.json").code == 0
     named = [part if part == "--feed" else f"skid-100-ft.xlsx!{part}" for part in TYPED]
     assert xlmc("simulate", "skid-100-ft.xlsx", "-n", 5_000, *named, "-o", "named.json").code == 0
-    found = [json.loads(Path(f"{name}.json").read_text(encoding="utf-8"))["forecasts"] for name in ("plain", "named")]
-    assert found[0] == found[1]
+    result = [json.loads(Path(f"{name}.json").read_text(encoding="utf-8"))["forecasts"] for name in ("plain", "named")]
+    assert result[0] == result[1]
 
 
 WRITERS = {

@@ -89,19 +89,19 @@ def test_ways_to_name_the_range(xlmc, measured, way):
 
 def test_json(xlmc, measured):
     outcome = xlmc("fit", measured, "Tests!C2:C21", "--json", "--by", "ks")
-    found = json.loads(outcome.out)
-    assert (found["values"], found["kind"], found["ranked_by"]) == (20, "counts", "ks")
-    distances = [each["kolmogorov_smirnov"] for each in found["fits"]]
+    result = json.loads(outcome.out)
+    assert (result["values"], result["kind"], result["ranked_by"]) == (20, "counts", "ks")
+    distances = [each["kolmogorov_smirnov"] for each in result["fits"]]
     assert distances == sorted(distances)
-    assert found["fits"][0]["anderson_darling"] is None
-    assert found["row"]["Distribution"] == found["fits"][0]["distribution"]
-    assert "20 values tell families of distributions apart only roughly" in found["cautions"][0]
+    assert result["fits"][0]["anderson_darling"] is None
+    assert result["row"]["Distribution"] == result["fits"][0]["distribution"]
+    assert "20 values tell families of distributions apart only roughly" in result["cautions"][0]
     assert "only roughly" in outcome.err
 
 
 def test_counts_may_be_fitted_as_continuous(xlmc, measured):
-    found = json.loads(xlmc("fit", measured, "Tests!C2:C21", "--json", "--kind", "continuous").out)
-    assert "Normal" in {each["distribution"] for each in found["fits"]}
+    result = json.loads(xlmc("fit", measured, "Tests!C2:C21", "--json", "--kind", "continuous").out)
+    assert "Normal" in {each["distribution"] for each in result["fits"]}
 
 
 def test_too_few_values_are_exit_code_1(xlmc, alone):

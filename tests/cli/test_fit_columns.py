@@ -45,9 +45,9 @@ def test_a_pair_of_columns_has_its_best_copula_and_how_far_the_gaussian_one_is_b
     pair = SimpleNamespace(first="a", second="b", n=1234, correlation=Estimate(0.5, 0.02), copulas=copulas)
     [row] = _pairs(SimpleNamespace(pairs=[pair])).rows
     assert row == ("a", "b", "1,234", "0.500 ± 0.020", *cells)
-    [found] = _as_json(SimpleNamespace(columns=[], pairs=[pair]), "book")["pairs"]
-    assert (found["first"], found["second"], found["rows"]) == ("a", "b", 1234)
-    assert [(each["name"], each["aic"], each["turned"]) for each in found["copulas"]] == [
+    [result] = _as_json(SimpleNamespace(columns=[], pairs=[pair]), "book")["pairs"]
+    assert (result["first"], result["second"], result["rows"]) == ("a", "b", 1234)
+    assert [(each["name"], each["aic"], each["turned"]) for each in result["copulas"]] == [
         (each.name, each.aic, each.turned) for each in copulas
     ]
 
@@ -56,9 +56,9 @@ def test_a_pair_of_columns_has_its_best_copula_and_how_far_the_gaussian_one_is_b
 def test_what_is_said_of_columns_that_are_not_fitted(count, columns):
     texts = SimpleNamespace(fitting=None, best=None, shares={"yes": Estimate(0.25, 0.01)}, name="t", why="")
     other = SimpleNamespace(fitting=None, best=None, shares={}, name="u", why="it has 2 values")
-    found = _report(SimpleNamespace(columns=[texts, other][:count], pairs=[]), "data.csv")
-    assert found.below == f"data.csv: {columns}"
-    table, *others = found.blocks
+    result = _report(SimpleNamespace(columns=[texts, other][:count], pairs=[]), "data.csv")
+    assert result.below == f"data.csv: {columns}"
+    table, *others = result.blocks
     assert (table.title, table.rows) == ("t: shares of its texts", (("yes", "25.0 ± 1.0 %"),))
     assert [each.text for each in others] == ["Not fitted: u: it has 2 values."][: count - 1]
 
@@ -167,10 +167,10 @@ def test_columns_of_a_file_are_fitted_with_their_correlations_into_a_book(xlmc, 
     data.write_text("\n".join(["Friction;Speed;Surface", *lines]), encoding="utf-8")
     outcome = xlmc("fit", data, "--uncertain", "--into", book, "-o", tmp_path / "found.html", "--json")
     assert outcome.code == 0, outcome.err
-    found = json.loads(outcome.out)
-    assert [each["name"] for each in found["columns"]] == ["Friction", "Speed", "Surface"]
-    assert set(found["columns"][2]["shares"]) == {"dry", "wet"}
-    assert found["pairs"][0]["rank_correlation"]["value"] > 0.6
+    result = json.loads(outcome.out)
+    assert [each["name"] for each in result["columns"]] == ["Friction", "Speed", "Surface"]
+    assert set(result["columns"][2]["shares"]) == {"dry", "wet"}
+    assert result["pairs"][0]["rank_correlation"]["value"] > 0.6
     names = [row[0].value for row in openpyxl.load_workbook(book)["Fitted"].iter_rows(min_row=6)]
     assert "Friction: Mean" in names
     assert "Speed" in names

@@ -46,9 +46,9 @@ def test_rows_stand_in_the_units_of_the_sheet(name, per_kg, per_kmh, per_mm, cas
     source.write_text(TESTS, encoding="utf-8")
     done = run(source, "--tests", 2, "--into", path)
     assert done.exit_code == 0, done.output
-    found = [row for row in entered(path) if row[2] is not None]
-    assert [row[:2] for row in found] == [[f"tests.csv: {number}", 2] for number in (4241, 4250, 4300)]
-    for row, given in zip(found, ROWS, strict=True):
+    result = [row for row in entered(path) if row[2] is not None]
+    assert [row[:2] for row in result] == [[f"tests.csv: {number}", 2] for number in (4241, 4250, 4300)]
+    for row, given in zip(result, ROWS, strict=True):
         scales = [per_kg, per_kmh, *[per_mm] * 7]
         assert row[2:] == pytest.approx([scale * value for scale, value in zip(scales, given[1:], strict=True)])
     shown = engine.calculate(excel.load(path))
@@ -76,7 +76,7 @@ def test_nothing_else_changes_and_a_range_does_as_well(case, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("spoil", "said"),
+    ("spoil", "message"),
     [
         (lambda text: text.replace("500;540", "500;", 1), "row 2: c3 is"),
         (lambda text: text.replace("1662", "heavy"), "row 3: weight is 'heavy'"),
@@ -86,13 +86,13 @@ def test_nothing_else_changes_and_a_range_does_as_well(case, tmp_path):
         (lambda text: text + text.splitlines()[1] * 0 + "\n".join([text.splitlines()[1]] * 20), "room for 16 more"),
     ],
 )
-def test_what_is_no_test_is_refused_and_nothing_is_written(spoil, said, case, tmp_path):
+def test_what_is_no_test_is_refused_and_nothing_is_written(spoil, message, case, tmp_path):
     path, source = case("crush-energy"), tmp_path / "tests.csv"
     source.write_text(spoil(TESTS), encoding="utf-8")
     before = path.read_bytes()
     done = run(source, "--tests", 1, "--into", path)
     assert done.exit_code
-    assert said in (done.output + str(done.exception))
+    assert message in (done.output + str(done.exception))
     assert path.read_bytes() == before
 
 

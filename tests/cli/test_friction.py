@@ -67,7 +67,7 @@ def test_an_option_of_xlmc_behind_a_command_is_told_where_it_stands(xlmc):
     assert "--no-kept-code stands before the command: xlmc --no-kept-code simulate" in outcome.err
 
 
-@pytest.mark.parametrize(("typed", "found"), [("war", ["warranty"]), ("Bl", ["blank"]), ("nothing", [])])
-def test_templates_are_completed(typed, found):
+@pytest.mark.parametrize(("typed", "result"), [("war", ["warranty"]), ("Bl", ["blank"]), ("nothing", [])])
+def test_templates_are_completed(typed, result):
     completion = BashComplete(command, {}, "xlmc", "_XLMC_COMPLETE")
-    assert [each.value for each in completion.get_completions(["new"], typed)] == found
+    assert [each.value for each in completion.get_completions(["new"], typed)] == result

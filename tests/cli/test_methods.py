@@ -77,18 +77,18 @@ def test_words_and_files(xlmc, book, tmp_path, monkeypatch):
 def test_json(xlmc, book):
     outcome = xlmc("methods", book, *SHORT, "--json", "--accuracy", "1%")
     assert outcome.code == 0
-    found = json.loads(outcome.out)
-    methods = {each["method"]: each for each in found["methods"]}
-    bounds, truth = methods["corners"]["bounds"], found["reference"]["forecasts"]
+    result = json.loads(outcome.out)
+    methods = {each["method"]: each for each in result["methods"]}
+    bounds, truth = methods["corners"]["bounds"], result["reference"]["forecasts"]
     for name, answer in truth.items():
         assert bounds[name]["least"] <= answer["low"]["value"] <= answer["high"]["value"] <= bounds[name]["most"]
     assert any(answer["sd"]["value"] == 0.0 for answer in truth.values())
     assert methods["mc"]["runs"][-1]["trials"] == 4096
     assert methods["mc"]["needs"]["trials"] > 0
-    assert found["accuracy"] == "1%"
-    assert any("Recommended: " in sentence for sentence in found["recommendation"])
-    assert found["reference"]["sampling"] == "sobol"
-    assert found["not_used"] == {}
+    assert result["accuracy"] == "1%"
+    assert any("Recommended: " in sentence for sentence in result["recommendation"])
+    assert result["reference"]["sampling"] == "sobol"
+    assert result["not_used"] == {}
 
 
 def test_an_engine_that_refuses_the_book_is_named_and_left_out(xlmc, tmp_path):
@@ -99,15 +99,15 @@ def test_an_engine_that_refuses_the_book_is_named_and_left_out(xlmc, tmp_path):
     workbook_of(sheets, tables).save(path)
     outcome = xlmc("methods", path, *SHORT, "--json")
     assert outcome.code == 0
-    found = json.loads(outcome.out)
-    assert list(found["not_used"]) == ["Monte Carlo, engine formulas"]
-    said = found["not_used"]["Monte Carlo, engine formulas"]
-    assert said.startswith("Model!A1: The engine `formulas` cannot compute this.")
-    assert "SUM((Inputs!B2,Inputs!B3))" in said
-    methods = {each["method"]: each for each in found["methods"]}
+    result = json.loads(outcome.out)
+    assert list(result["not_used"]) == ["Monte Carlo, engine formulas"]
+    message = result["not_used"]["Monte Carlo, engine formulas"]
+    assert message.startswith("Model!A1: The engine `formulas` cannot compute this.")
+    assert "SUM((Inputs!B2,Inputs!B3))" in message
+    methods = {each["method"]: each for each in result["methods"]}
     assert "mc" in methods
     assert not any("formulas" in key for key in methods)
-    assert any("Recommended: " in said for said in found["recommendation"])
+    assert any("Recommended: " in messages for messages in result["recommendation"])
     shown = xlmc("methods", path, *SHORT)
     assert shown.code == 0
     assert "engine formulas" in shown.out

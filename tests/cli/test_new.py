@@ -90,8 +90,8 @@ def test_results_and_marks_of_open_books_are_no_templates(tmp_path):
     for name in ("skid", "skid-si", "skid-results", "skid-si-results", "skid-results-2", "skid-results-13"):
         shutil.copy(skid, folder / f"{name}.xlsx")
     (folder / "~$skid.xlsx").write_bytes(b"\x05Analyst")
-    found = templates(tmp_path / "xlmc")
-    assert {name: sorted(template.editions) for name, template in found.items()} == {"skid": ["imperial", "si"]}
+    result = templates(tmp_path / "xlmc")
+    assert {name: sorted(template.editions) for name, template in result.items()} == {"skid": ["imperial", "si"]}
 
 
 def test_the_templates_are_the_committed_ones():

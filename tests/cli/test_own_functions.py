@@ -97,7 +97,7 @@ def test_dask_gives_the_same_bits(book, tmp_path):
 
 
 def test_arguments_and_results_of_every_kind(book, tmp_path):
-    found = calculate(
+    result = calculate(
         load_book(
             book(
                 B5="=load",
@@ -117,10 +117,10 @@ def test_arguments_and_results_of_every_kind(book, tmp_path):
             functions=tmp_path / "my_functions.py",
         )
     )
-    values = [found[f"Model!C{row}"] for row in range(1, 12)]
+    values = [result[f"Model!C{row}"] for row in range(1, 12)]
     assert values[:8] == [40.0, "fine!", "fine", True, 3.0, 7.0, "moment: 60", ErrorCode.DIV0]
     assert values[8:] == [ErrorCode.DIV0, 1.0, 0.0]
-    assert found["Model!B2"] == 60.0
+    assert result["Model!B2"] == 60.0
 
 
 def test_a_number_that_is_none_is_an_error_of_that_trial(book, tmp_path):
@@ -341,10 +341,10 @@ def test_studies_and_scenarios_of_such_a_model(book, tmp_path):
     model = library.load(book(), functions=tmp_path / "my_functions.py")
     changed = model.with_(load=library.Uniform(30, 50))
     plain = library.load(beam(tmp_path / "plain.xlsx", {})).with_(load=library.Uniform(30, 50))
-    found, expected = changed.simulate(5_000, seed=1), plain.simulate(5_000, seed=1)
-    assert found.frame().equals(expected.frame())
-    found.save(tmp_path / "changed-results.xlsx")
-    sobol = library.sensitivities(found), library.sensitivities(expected)
+    result, expected = changed.simulate(5_000, seed=1), plain.simulate(5_000, seed=1)
+    assert result.frame().equals(expected.frame())
+    result.save(tmp_path / "changed-results.xlsx")
+    sobol = library.sensitivities(result), library.sensitivities(expected)
     assert str(sobol[0]) == str(sobol[1])
 
 

@@ -91,12 +91,12 @@ def test_a_changed_cell_is_named(xlmc, results, monkeypatch):
 
 
 def test_as_json(xlmc, results):
-    found = json.loads(xlmc("replay", results, "--json").out)
-    assert found.pop("verdict").startswith("identical: the same ")
-    shown = found.pop("result_sheets")
+    result = json.loads(xlmc("replay", results, "--json").out)
+    assert result.pop("verdict").startswith("identical: the same ")
+    shown = result.pop("result_sheets")
     assert set(shown.pop("compared")) == {"Results", "Trials", "Record"}
     assert shown == {"differences": [], "missing": [], "not_compared": []}
-    assert found == {
+    assert result == {
         "identical": True,
         "to_the_last_bit": True,
         "same_accepted_trials": True,
@@ -111,9 +111,11 @@ def test_as_json(xlmc, results):
     edit(results, "Model", "A1", "=nosuchname")
     outcome = xlmc("replay", results, "--json")
     assert outcome.code == 1
-    found = json.loads(outcome.out)
-    assert found["changes"] == [{"kind": "cell", "where": "Model!A1", "was": "=SUM(Inputs!B2:B4)", "is": "=nosuchname"}]
-    assert "nosuchname" in found["fault"]
+    result = json.loads(outcome.out)
+    assert result["changes"] == [
+        {"kind": "cell", "where": "Model!A1", "was": "=SUM(Inputs!B2:B4)", "is": "=nosuchname"}
+    ]
+    assert "nosuchname" in result["fault"]
 
 
 def test_an_edited_record_is_found_out(xlmc, results):
@@ -183,9 +185,9 @@ def test_edited_results_are_named_and_counted(xlmc, results):
     assert lines[3] == f"  Results!D6 says 12.9, the run gives {value!r}"
     assert lines[4].startswith("  Trials!C5 says 0, the run gives ")
     assert lines[23:] == ["  … and 6 more"]
-    found = json.loads(xlmc("replay", results, "--json").out)["result_sheets"]["differences"]
-    assert len(found) == 26
-    assert found[0] == {"where": "Results!D6", "says": 12.9, "gives": value}
+    result = json.loads(xlmc("replay", results, "--json").out)["result_sheets"]["differences"]
+    assert len(result) == 26
+    assert result[0] == {"where": "Results!D6", "says": 12.9, "gives": value}
 
 
 def test_another_processor(xlmc, results, monkeypatch):
@@ -231,8 +233,8 @@ def test_the_documents_show_what_is_printed(xlmc, short_books, case_study, tmp_p
         assert [line for line in lines if line != "  …"] == printed[: len(lines) - ("  …" in lines)]
     page = (DOCS / "json.md").read_text(encoding="utf-8")
     number, program = (re.search(rf"```{kind}\n(.*?)```", page, re.DOTALL)[1] for kind in ("json", "python"))
-    found = json.loads((tmp_path / "book.json").read_text(encoding="utf-8"))
+    result = json.loads((tmp_path / "book.json").read_text(encoding="utf-8"))
     # The last digit may differ between kinds of processors: docs/runs.md.
-    assert found["forecasts"][0]["statistics"]["mean"] == pytest.approx(json.loads(number), rel=1e-12)
+    assert result["forecasts"][0]["statistics"]["mean"] == pytest.approx(json.loads(number), rel=1e-12)
     printed = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True).stdout
     assert printed.splitlines()[0].startswith("Chevrolet delta-V 11.25")

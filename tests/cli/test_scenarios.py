@@ -69,10 +69,10 @@ def test_from_the_workbook_to_all_outputs(xlmc, book, tmp_path):
     for title in ("Scenarios: what is changed, and how many trials are accepted", "area, ft²", "inverse"):
         assert [line[0].strip() for line in lines_of(outcome.out, title)] == names
 
-    found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
-    jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(found)
-    assert [each["name"] for each in found["scenarios"]] == [None, *names[1:]]
-    base, narrow, held, looser, higher = found["scenarios"]
+    result = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator(json.loads(SCHEMA.read_text(encoding="utf-8"))).validate(result)
+    assert [each["name"] for each in result["scenarios"]] == [None, *names[1:]]
+    base, narrow, held, looser, higher = result["scenarios"]
     assert (narrow["changes"], narrow["note"]) == ("width from 1.5 to 2", "measured")
     assert higher["changes"] == "Rate = 3; area Threshold = 22"
     assert looser["accepted"] > base["accepted"]
@@ -238,8 +238,8 @@ def test_ctrl_c_while_scenarios_are_run_keeps_the_run(xlmc, book, tmp_path, monk
     outcome = xlmc("simulate", book, "--scenarios", "--json", tmp_path / "r.json")
     assert outcome.code == 130
     assert "interrupted before all scenarios were run" in outcome.err.replace("\n", " ")
-    found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
-    assert "scenarios" not in found
+    result = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
+    assert "scenarios" not in result
     assert shown(tmp_path / "book-results.xlsx")[1] == shown(tmp_path / "plain.xlsx")[1]
 
 

@@ -22,17 +22,17 @@ def test_the_case_study(xlmc, case_study):
     """The inertias are not needed; what impact centre and tangent cost stands in the table, alone and together."""
     outcome = xlmc("screen", case_study, *OF_THE_CASE_STUDY, "--json")
     assert outcome.code == 0
-    found = json.loads(outcome.out)
-    held = set(found["held_together"]["names"])
+    result = json.loads(outcome.out)
+    held = set(result["held_together"]["names"])
     assert {"Chevrolet yaw moment of inertia", "Nissan yaw moment of inertia"} <= held
-    costs = {entry["names"][0]: entry for entry in found["held_alone"]}
+    costs = {entry["names"][0]: entry for entry in result["held_alone"]}
     assert len(costs) == 17
     assert sum("impact centre" in name for name in costs) == 4
-    (asked,) = found["held_as_asked"]
+    (asked,) = result["held_as_asked"]
     assert len(asked["names"]) == 5
     spread = asked["forecasts"]["Nissan impact speed"]["standard_deviation"]["difference"]
     assert spread["value"] < -3 * spread["error"]
-    assert {"Model!D7", "Model!D8"} <= set(found["cells"]["constant_then"])  # the masses
+    assert {"Model!D7", "Model!D8"} <= set(result["cells"]["constant_then"])  # the masses
 
 
 def test_the_case_study_in_words(xlmc, case_study):
@@ -95,10 +95,10 @@ def test_an_answer_that_needs_no_better_input(xlmc, plain_book):
     assert "Double" not in text
     assert "Not needed, wherever in its range it lies: c. Held at either end" in text
     assert re.search(r"c = 0.00025\d* +\d", outcome.out)  # 2.5 % of the way from 0 to 0.01
-    found = json.loads(xlmc("screen", plain_book, *asked, "--ends", "--json").out)
-    assert {entry["name"] for entry in found["held_at_ends"] if entry["free"]} == {"c"}
-    assert found["forecasts_not_asked"] == ["Double"]
-    assert list(found["held_alone"][0]["forecasts"]) == ["Speed"]
+    result = json.loads(xlmc("screen", plain_book, *asked, "--ends", "--json").out)
+    assert {entry["name"] for entry in result["held_at_ends"] if entry["free"]} == {"c"}
+    assert result["forecasts_not_asked"] == ["Double"]
+    assert list(result["held_alone"][0]["forecasts"]) == ["Speed"]
 
 
 def test_a_forecast_that_is_not_there(xlmc, case_study):

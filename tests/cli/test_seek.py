@@ -45,13 +45,13 @@ def test_mistakes_are_one_message_and_exit_code_2(xlmc, book):
 
 
 def test_files_hold_the_same(xlmc, book, tmp_path):
-    sheet, page, found = tmp_path / "found.xlsx", tmp_path / "found.html", tmp_path / "found.json"
+    sheet, page, result = tmp_path / "found.xlsx", tmp_path / "found.html", tmp_path / "found.json"
     given = ["seek", book, "--cell", "B2", "--to", "0", "--by", "B1", "--low", "0", "--high", "10"]
-    assert xlmc(*given, "-o", sheet, "-o", page, "-o", found).code == 0
+    assert xlmc(*given, "-o", sheet, "-o", page, "-o", result).code == 0
     texts = [str(cell) for row in openpyxl.load_workbook(sheet)["Seek"].iter_rows(values_only=True) for cell in row]
     assert "Model!B2 is 0 where Model!B1 is 2." in texts
     assert "Model!B2 is 0 where Model!B1 is 2." in page.read_text(encoding="utf-8")
-    written = json.loads(found.read_text(encoding="utf-8"))
+    written = json.loads(result.read_text(encoding="utf-8"))
     assert written["values"] == [{"by": 2.0, "cell": 0.0}]
     assert written.pop("seal")
     assert written == json.loads(xlmc(*given, "--json").out)

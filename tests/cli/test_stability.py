@@ -31,13 +31,13 @@ def test_the_case_study(xlmc, case_study):
 def test_json(xlmc, as_printed):
     outcome = xlmc("stability", as_printed, "-n", "20000", "--seed", "3", "--json", "--quiet")
     assert outcome.code == 1
-    found = json.loads(outcome.out)
-    assert (found["trials"], found["seed"], found["unchecked"]) == (20_000, 3, [])
-    assert [one["kind"] for one in found["findings"][:2]] == ["quadrant", "division"]
-    (where,) = found["findings"][1]["where"]
+    result = json.loads(outcome.out)
+    assert (result["trials"], result["seed"], result["unchecked"]) == (20_000, 3, [])
+    assert [one["kind"] for one in result["findings"][:2]] == ["quadrant", "division"]
+    (where,) = result["findings"][1]["where"]
     assert (where["assumption"], where["low"], where["units"]) == ("Nissan approach angle", 272, "°")
-    assert len(found["cells"]) == 28
-    assert {"amplification", "rounding", "excess", "through"} <= set(found["cells"][0])
+    assert len(result["cells"]) == 28
+    assert {"amplification", "rounding", "excess", "through"} <= set(result["cells"][0])
 
 
 def test_a_book_that_is_not_there(xlmc):

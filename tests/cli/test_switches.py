@@ -62,13 +62,13 @@ def book_at(path, used=USED, *, column=True, scenarios=()):
     return path
 
 
-def assert_same(found, expected):
-    assert found.trial_index.size > 20
-    assert found.trial_index.tolist() == expected.trial_index.tolist()
+def assert_same(result, expected):
+    assert result.trial_index.size > 20
+    assert result.trial_index.tolist() == expected.trial_index.tolist()
     for name, values in expected.forecasts.items():
-        assert found.forecasts[name].tobytes() == values.tobytes(), name
-    assert found.tally.rejected.tolist() == expected.tally.rejected.tolist()
-    assert found.tally.only.tolist() == expected.tally.only.tolist()
+        assert result.forecasts[name].tobytes() == values.tobytes(), name
+    assert result.tally.rejected.tolist() == expected.tally.rejected.tolist()
+    assert result.tally.only.tolist() == expected.tally.only.tolist()
 
 
 @pytest.fixture(scope="module")
@@ -209,9 +209,9 @@ def test_rows_that_are_off_are_listed_and_may_be_wrong(xlmc, tmp_path):
 def test_results_record_what_is_off_and_repeat(xlmc, tmp_path):
     path, results = book_at(tmp_path / "book.xlsx"), tmp_path / "r.xlsx"
     xlmc("simulate", path, "-o", results, "--json", tmp_path / "r.json", "--quiet")
-    found = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
-    assert [each["name"] for each in found["filters"]] == ["fast", "camera"]
-    rows = {each["name"]: each for each in found["record"]["filters"]["rows"]}
+    result = json.loads((tmp_path / "r.json").read_text(encoding="utf-8"))
+    assert [each["name"] for each in result["filters"]] == ["fast", "camera"]
+    rows = {each["name"]: each for each in result["record"]["filters"]["rows"]}
     assert (rows["slow"]["limits"], rows["slow"]["rejected"]) == ("not used: Use is off", None)
     assert xlmc("replay", results).code == 0
     book = openpyxl.load_workbook(results)
@@ -236,12 +236,12 @@ def test_scenarios_switch_rows(tmp_path, column):
         model.definitions.scenarios, ({"fast": False}, {"camera": False}, {"fast": False, "camera": False}), strict=True
     ):
         expected = load(book_at(tmp_path / "edited.xlsx", {**used, **switched}))
-        found = applied(model, scenario.changes)
-        assert {each.name for each in found.filters} == {each.name for each in expected.filters}
+        result = applied(model, scenario.changes)
+        assert {each.name for each in result.filters} == {each.name for each in expected.filters}
         state = adjustments_of(model.definitions, scenario)
         assert {name: each["used"] for name, each in state.filters.items()} == switched
         if scenario.name != "neither":
-            assert_same(simulate(found, trials=2_000), simulate(expected, trials=2_000))
+            assert_same(simulate(result, trials=2_000), simulate(expected, trials=2_000))
 
 
 def test_a_limit_of_a_row_that_is_off_is_refused_in_a_scenario(own):

@@ -41,10 +41,10 @@ def test_the_page_shows_the_output(xlmc, book):
 
 def test_json_holds_the_bands_and_the_curve(xlmc, book):
     outcome = xlmc("uncertainty", book, "--outer", "40", "--inner", "50", "--percentile", "97.5", "--json", "--quiet")
-    found = json.loads(outcome.out)
-    assert (found["outer"], found["inner"], found["seed"], found["accepted"]) == (40, 50, 999, 2_000)
-    assert found["uncertain"] == ["Mean friction", "Scatter of friction", "Skid"]
-    friction, speed = found["forecasts"]
+    result = json.loads(outcome.out)
+    assert (result["outer"], result["inner"], result["seed"], result["accepted"]) == (40, 50, 999, 2_000)
+    assert result["uncertain"] == ["Mean friction", "Scatter of friction", "Skid"]
+    friction, speed = result["forecasts"]
     assert [each["number"] for each in speed["numbers"]] == ["mean", "SD", "97.5th percentile", "P(> 50)"]
     assert all(each["low"]["value"] <= each["high"]["value"] for each in friction["numbers"])
     assert {"share", "all_trials", "low", "high"} == set(friction["curve"][0])

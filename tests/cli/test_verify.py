@@ -46,10 +46,10 @@ def test_a_cell_that_differs_is_shown_and_is_exit_code_1(xlmc, spoiled):
 
 def test_json(xlmc, spoiled):
     outcome = xlmc("verify", spoiled, "--json")
-    found = json.loads(outcome.out)
+    result = json.loads(outcome.out)
     assert outcome.code == 1
-    assert found["differing"] == 1
-    (cell,) = found["cells"]
+    assert result["differing"] == 1
+    (cell,) = result["cells"]
     assert cell["cell"] == "Model!D54"
     assert cell["expected"] == 99
     assert cell["relative_difference"] == pytest.approx(1 - cell["got"] / 99)

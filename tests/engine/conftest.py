@@ -65,13 +65,13 @@ def lower(workbook):
         book = workbook(cells, **of_workbook)
         names = {parse_address(address, "S"): address for address in inputs}
         held = {parse_address(address, "S"): value for address, value in (held or {}).items()}
-        found = [parse_address(address, "S") for address in targets]
+        result = [parse_address(address, "S") for address in targets]
 
         def lowered(more):
-            graph = build_graph(Resolver(book, names), found, frozenset(names), frozenset(held), more=more)
+            graph = build_graph(Resolver(book, names), result, frozenset(names), frozenset(held), more=more)
             return Lowering(graph, names, held)
 
-        return lower_until_complete(lowered), [Target(cell, cell) for cell in found]
+        return lower_until_complete(lowered), [Target(cell, cell) for cell in result]
 
     return make
 
@@ -158,14 +158,14 @@ def ways(lower, load_program):
         placed = [f if isinstance(f, tuple) else (f"Z{100 + i}", f) for i, f in enumerate(formulas)]
         book = cells | {address: f"={text}" for address, text in placed}
         targets = [address for address, _ in placed]
-        lowering, found = lower(book, {}, targets, **of_workbook)
-        known = [lowering.known(target) for target in found]
+        lowering, result = lower(book, {}, targets, **of_workbook)
+        known = [lowering.known(target) for target in result]
         answers = {"constants": [_plain(value.objects().ravel()[0]) for value in known]}
         drawn = {a: v for a, v in cells.items() if type(v) in (int, float) and a not in held}
         draws = {address: np.full(3, float(value)) for address, value in drawn.items()}
-        lowering, found = lower(book, draws, targets, **of_workbook)
+        lowering, result = lower(book, draws, targets, **of_workbook)
         for way in WAYS[1:]:
-            program = load_program(way)(lowering, [], found, frozenset(draws))
+            program = load_program(way)(lowering, [], result, frozenset(draws))
             evaluator = program.evaluator(3)
             list(evaluator.filters(draws, 3))
             columns = [_objects(column) for column in evaluator.forecasts(np.arange(3))]
@@ -184,11 +184,11 @@ def trials(lower, load_program):
         answers, n = {}, len(draws)
         if constants:
             asked = {f"Z{row}": f"={formula.replace('A1', repr(draw))}" for row, draw in enumerate(draws, 100)}
-            lowering, found = lower(cells | asked, {}, asked)
-            answers["constants"] = [_plain(lowering.known(target).objects().ravel()[0]) for target in found]
-        lowering, found = lower(cells | {"A1": 0.0, "Z9": f"={formula}"}, ["A1"], ["Z9"])
+            lowering, result = lower(cells | asked, {}, asked)
+            answers["constants"] = [_plain(lowering.known(target).objects().ravel()[0]) for target in result]
+        lowering, result = lower(cells | {"A1": 0.0, "Z9": f"={formula}"}, ["A1"], ["Z9"])
         for way in engines:
-            evaluator = load_program(way)(lowering, [], found, frozenset()).evaluator(n)
+            evaluator = load_program(way)(lowering, [], result, frozenset()).evaluator(n)
             list(evaluator.filters({"A1": np.array(draws)}, n))
             answers[way] = _objects(evaluator.forecasts(np.arange(n))[0])
         return answers
@@ -201,9 +201,9 @@ def gives(ways):
     """`gives(cells, table)`: what differs from a table of formula -> value, as a list of lines."""
 
     def compare(cells, table, held=(), **of_workbook):
-        found = ways(cells, [formula for formula, _ in table], held, **of_workbook)
+        result = ways(cells, [formula for formula, _ in table], held, **of_workbook)
         lines = []
-        for way, answers in found.items():
+        for way, answers in result.items():
             for (formula, expected), got in zip(table, answers, strict=True):
                 wanted = _plain(expected)
                 wanted = "text" if isinstance(wanted, str) and way != "constants" and wanted[:1] != "#" else wanted

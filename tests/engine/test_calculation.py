@@ -54,9 +54,9 @@ def path(tmp_path_factory):
         sheet[place] = formula
     sheet["C1"] = ArrayFormula("C1:C2", "=A1:A2*10")
     other["A1"] = 5
-    found = tmp_path_factory.mktemp("calculation") / "book.xlsx"
-    made.save(found)
-    return found
+    result = tmp_path_factory.mktemp("calculation") / "book.xlsx"
+    made.save(result)
+    return result
 
 
 @pytest.fixture(scope="module")
@@ -91,9 +91,9 @@ def test_the_workbook_itself_stays_as_it_was(path, calculated):
 def test_saved_values_stay_where_nothing_can_be_computed(workbook):
     """And what depends on them is computed from them; what was saved for other formulas is not looked at."""
     book = workbook({"A1": ("=NOSUCH(1)", 4.0), "A2": ("=A1+1", 99.0), "A3": ("=RAND()", 0.25), "A4": ("=A3*2", 9.0)})
-    found = engine.calculate(book)
-    assert [found[f"S!A{row}"] for row in (1, 2, 3, 4)] == [4.0, 5.0, 0.25, 0.5]
-    named = {str(each.where): each.message for each in found.notices}
+    result = engine.calculate(book)
+    assert [result[f"S!A{row}"] for row in (1, 2, 3, 4)] == [4.0, 5.0, 0.25, 0.5]
+    named = {str(each.where): each.message for each in result.notices}
     assert named.keys() == {"S!A1", "S!A3"}
     assert all(message.endswith("; the saved value stays") for message in named.values())
 
@@ -101,6 +101,6 @@ def test_saved_values_stay_where_nothing_can_be_computed(workbook):
 def test_a_name_and_a_table_are_read_as_in_excel(workbook, table):
     cells = {"A1": "Low", "A2": 1.0, "A3": 2.0, "B2": "=SUM(T[Low])*Rate", "B3": "=T[@Low]", "D1": 10.0}
     book = workbook(cells, {"Rate": "S!$D$1"}, [table("T", "S!A1:A3", "Low")])
-    found = engine.calculate(book)
-    assert (found["S!B2"], found["S!B3"], found["Rate"]) == (30.0, 2.0, 10.0)
-    assert found.content(Cell("S", 2, 2)).formula is not None
+    result = engine.calculate(book)
+    assert (result["S!B2"], result["S!B3"], result["Rate"]) == (30.0, 2.0, 10.0)
+    assert result.content(Cell("S", 2, 2)).formula is not None

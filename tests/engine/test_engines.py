@@ -151,11 +151,11 @@ def _columns(evaluator, draws, n):
     """Codes and numbers of filters, then of forecasts on the survivors, as engines are asked; copies."""
 
     def taken(columns):
-        found = []
+        result = []
         for column in columns:
             codes = np.zeros(column.values.size, int) if column.codes is None else column.codes.astype(int)
-            found.append((codes, np.where(codes > 0, 0.0, column.values.astype(float))))
-        return found
+            result.append((codes, np.where(codes > 0, 0.0, column.values.astype(float))))
+        return result
 
     early = taken(evaluator.filters(draws, n))
     kept = np.logical_and.reduce([np.ones(n, bool), *((codes == 0) & (x == 1) for codes, x in early)])
@@ -216,14 +216,14 @@ def agree_in_loops(programs):
     def calm_trials(dag, filters, forecasts, inputs, m, accepts):
         """Of each book the one of its trials that is calm, as far as the careful path tells, and least odd."""
         columns = _columns(TrackingEvaluator(dag, [], [*filters, *forecasts]), inputs, m)
-        found = []
+        result = []
         for k, (codes, accepted) in enumerate(columns[: len(filters)]):
             mine = columns[len(filters) + len(OF_A_BOOK) * k :][: len(OF_A_BOOK)]
             calm = np.flatnonzero(
                 (accepted == accepts) & np.logical_and.reduce([codes == 0, *(each == 0 for each, _ in mine)])
             )
-            found.append(min(calm, key=lambda trial: abs(inputs[f"F{k}!A1"][trial] - 1.6)))
-        return found
+            result.append(min(calm, key=lambda trial: abs(inputs[f"F{k}!A1"][trial] - 1.6)))
+        return result
 
     def check(books, *draws, accepts=True, may_err=(), relative=RELATIVE, in_vectors=True):
         sheets = range(len(books))
@@ -371,9 +371,9 @@ def outside_alone(programs, engine, formula, above, may_err):
     program, dag, nodes = programs(engine, a_book(formula, above), ("A1", "A2"), OF_A_BOOK, ["D1"], may_err)
     for inputs in [WITH_ERRORS] if may_err else OUTSIDE_DRAWS:
         inputs, n = {name: np.asarray(values, float) for name, values in inputs.items()}, len(inputs["A1"])
-        found = _columns(program.evaluator(n), inputs, n)
+        result = _columns(program.evaluator(n), inputs, n)
         expected = _columns(TrackingEvaluator(dag, *nodes), inputs, n)
-        agree(zip(found, expected, strict=True), relative=1e-15 if "LN" in formula else 0)
+        agree(zip(result, expected, strict=True), relative=1e-15 if "LN" in formula else 0)
 
 
 ABOVE = ["=C1>1.2", "=Z9<1E300"]
@@ -419,8 +419,8 @@ def test_a_value_that_a_function_hands_on_stays_when_its_memory_is_used_again(di
 def test_draws_that_are_errors(differences, engine):
     cells = {"C1": "=A1+1", "C2": "=IFERROR(A1,7)", "C3": "=IF(A2>1,A1,A2)", "C4": "=A1>0", "D1": "=A2<3"}
     draws = {"A1": [np.nan, 1.0, np.nan, 2.0], "A2": [1.0, 2.0, 2.0, 3.0]}
-    found = differences(engine, cells, draws, ["C1", "C2", "C3", "C4", "A1"], ["D1", "C4"], may_err=["A1"])
-    agree(found)
+    result = differences(engine, cells, draws, ["C1", "C2", "C3", "C4", "A1"], ["D1", "C4"], may_err=["A1"])
+    agree(result)
     agree(differences(engine, cells, draws, ["C1", "C2", "C3", "C4", "A1"], [], may_err=["A1"]))
     agree(differences(engine, {}, draws, ["A1"], [], may_err=["A1"]))  # which nothing computes
 
@@ -428,9 +428,9 @@ def test_draws_that_are_errors(differences, engine):
 @ENGINE
 def test_a_formula_that_names_an_empty_cell_gives_zero(differences, engine):
     cells = {"C1": "=C9", "C2": "=C1&A1", "C3": "=C9+A1"}
-    found = differences(engine, cells, {"A1": [1.0, 2.0]}, ["C1", "C2", "C3", "C9"], [])
-    agree(found)
-    assert found[0][0][1].tolist() == [0.0, 0.0]
+    result = differences(engine, cells, {"A1": [1.0, 2.0]}, ["C1", "C2", "C3", "C9"], [])
+    agree(result)
+    assert result[0][0][1].tolist() == [0.0, 0.0]
 
 
 @pytest.mark.parametrize(

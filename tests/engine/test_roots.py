@@ -19,9 +19,9 @@ def of(values, trials):
 
 def test_each_trial_has_its_own_root():
     c = np.random.default_rng(1).uniform(1, 100, 5_000)
-    found = find_roots(lambda x, t: x**3 - of(c, t), np.zeros(c.size), np.full(c.size, 10.0))
-    assert np.array_equal(found.trials, np.arange(c.size))
-    assert np.max(np.abs(found.values / np.cbrt(c) - 1)) < 1e-14
+    result = find_roots(lambda x, t: x**3 - of(c, t), np.zeros(c.size), np.full(c.size, 10.0))
+    assert np.array_equal(result.trials, np.arange(c.size))
+    assert np.max(np.abs(result.values / np.cbrt(c) - 1)) < 1e-14
 
 
 @pytest.mark.parametrize(
@@ -53,15 +53,15 @@ def test_each_trial_has_its_own_root():
     ],
 )
 def test_all_roots_and_no_others(function, low, high, roots):
-    found = alone(function, low, high)
-    assert found == pytest.approx(roots, rel=1e-13, abs=1e-13)
+    result = alone(function, low, high)
+    assert result == pytest.approx(roots, rel=1e-13, abs=1e-13)
 
 
 def test_first_and_last_of_several():
-    found = find_roots(lambda x, _: x * x - 4, np.array([-5.0, 0.0, 3.0]), np.array([10.0, 10.0, 10.0]))
-    assert found.counts(3).tolist() == [2, 1, 0]
-    assert found.chosen(3) == pytest.approx([-2, 2, np.nan], nan_ok=True)
-    assert found.chosen(3, last=True) == pytest.approx([2, 2, np.nan], nan_ok=True)
+    result = find_roots(lambda x, _: x * x - 4, np.array([-5.0, 0.0, 3.0]), np.array([10.0, 10.0, 10.0]))
+    assert result.counts(3).tolist() == [2, 1, 0]
+    assert result.chosen(3) == pytest.approx([-2, 2, np.nan], nan_ok=True)
+    assert result.chosen(3, last=True) == pytest.approx([2, 2, np.nan], nan_ok=True)
 
 
 def test_roots_in_different_parts_of_the_scan_are_told_apart():
@@ -74,17 +74,17 @@ def test_two_close_roots_are_two_wherever_a_point_of_the_scan_lies_between_them(
     rng = np.random.default_rng(2)
     middle, gap = rng.uniform(0.1, 0.9, 20_000), 10 ** rng.uniform(-9, -1.5, 20_000)
     low, high = middle - gap / 2, middle + gap / 2
-    found = find_roots(lambda x, t: (x - of(low, t)) * (x - of(high, t)), np.zeros(middle.size), np.ones(middle.size))
-    counts = found.counts(middle.size)
+    result = find_roots(lambda x, t: (x - of(low, t)) * (x - of(high, t)), np.zeros(middle.size), np.ones(middle.size))
+    counts = result.counts(middle.size)
     between = np.floor(low * SCANNED) != np.floor(high * SCANNED)
     assert np.count_nonzero(between) > 500
     assert np.array_equal(counts, np.where(between, 2, 0))
-    assert np.allclose(found.values[np.isin(found.trials, np.flatnonzero(between))][::2], low[between], atol=1e-8)
+    assert np.allclose(result.values[np.isin(result.trials, np.flatnonzero(between))][::2], low[between], atol=1e-8)
 
 
 def test_a_trial_without_a_range_does_not_disturb_the_others():
     low, high = np.array([0.0, np.nan, 0.0]), np.array([10.0, 10.0, 10.0])
     target = np.array([2.0, 3.0, 4.0])
-    found = find_roots(lambda x, t: x - of(target, t), low, high)
-    assert found.trials.tolist() == [0, 2]
-    assert found.values == pytest.approx([2, 4])
+    result = find_roots(lambda x, t: x - of(target, t), low, high)
+    assert result.trials.tolist() == [0, 2]
+    assert result.values == pytest.approx([2, 4])

@@ -121,9 +121,9 @@ def test_cells_that_excel_iterated_until_they_hardly_changed(workbook, got, same
 
 def test_formulas_without_a_value_of_their_own(workbook):
     book = workbook({"A1": 1.0, "B1": ("=A1+1", 2.0), "B2": ("=NOSUCH(A1)", 3.0), "B3": ("=B2+1", 4.0)})
-    found = faults_of(lowered(book, "B1", "B2", "B3"), "why not")
-    assert list(map(str, found)) == ["S!B2"]
-    assert "NOSUCH" in found[Cell("S", 2, 2)]
+    result = faults_of(lowered(book, "B1", "B2", "B3"), "why not")
+    assert list(map(str, result)) == ["S!B2"]
+    assert "NOSUCH" in result[Cell("S", 2, 2)]
 
 
 def array_of_two(workbook, formula, area):
@@ -142,8 +142,8 @@ def array_of_two(workbook, formula, area):
     ],
 )
 def test_a_formula_that_spills_elsewhere_now(workbook, formula, area, moved):
-    found = faults_of(lowered(array_of_two(workbook, formula, area), "B1"), "why not")
-    assert list(found.values()) == (["the formula spills into another area than when the file was saved"] * moved)
+    result = faults_of(lowered(array_of_two(workbook, formula, area), "B1"), "why not")
+    assert list(result.values()) == (["the formula spills into another area than when the file was saved"] * moved)
 
 
 def test_cells_that_an_array_formula_fills(workbook):

@@ -41,7 +41,7 @@ def called(functions, *arguments, name="F"):
 
 
 @pytest.mark.parametrize(
-    ("body", "arguments", "found"),
+    ("body", "arguments", "result"),
     [
         ("x + y", [column(1.0, 2.0), column(10.0, 20.0)], [11.0, 22.0]),
         ("x + y", [column(1.0, 2.0), constant(10.0)], [11.0, 12.0]),
@@ -59,12 +59,12 @@ def called(functions, *arguments, name="F"):
         ("x + y", [area([[1.0]], [[3.0]]), constant(1.0)], [2.0, 4.0]),  # a range of one cell is its value
     ],
 )
-def test_functions_of_all_trials(made, body, arguments, found):
-    assert called(made(f"def F(x, y): return {body}"), *arguments) == found
+def test_functions_of_all_trials(made, body, arguments, result):
+    assert called(made(f"def F(x, y): return {body}"), *arguments) == result
 
 
 @pytest.mark.parametrize(
-    ("body", "arguments", "found"),
+    ("body", "arguments", "result"),
     [
         ("x + y if x > 1 else 'none'", [column(1.0, 2.0), constant(10.0)], ["none", 12.0]),
         ("np.float64(x)", [column(1.0, 2.0), constant(1.0)], [1.0, 2.0]),
@@ -78,8 +78,8 @@ def test_functions_of_all_trials(made, body, arguments, found):
         ("x[0, 1]", [area([[1.0, "b"]], [[3.0, "d"]]), constant(1.0)], ["b", "d"]),
     ],
 )
-def test_functions_of_one_trial(made, body, arguments, found):
-    assert called(made(f"@scalar\ndef F(x, y): return {body}"), *arguments) == found
+def test_functions_of_one_trial(made, body, arguments, result):
+    assert called(made(f"@scalar\ndef F(x, y): return {body}"), *arguments) == result
 
 
 def test_a_function_without_arguments_gives_one_value(made):
@@ -189,7 +189,7 @@ def test_what_a_function_was_called_with_is_told(made, text, words):
 
 
 @pytest.mark.parametrize(
-    ("given", "found"),
+    ("given", "result"),
     [
         ([1, 2], [1.0, 2.0]),
         ([True, False], [True, False]),
@@ -198,8 +198,8 @@ def test_what_a_function_was_called_with_is_told(made, text, words):
         (np.uint8(7), 7),
     ],
 )
-def test_numbers_that_are_given(given, found):
-    assert numbers_given(given).tolist() == found
+def test_numbers_that_are_given(given, result):
+    assert numbers_given(given).tolist() == result
 
 
 @pytest.mark.parametrize(

@@ -120,10 +120,10 @@ class Table:
 def with_cells(text: str, numbers: Mapping[float, Cell]) -> str:
     """A formula whose numbers are replaced by the cells that hold them; those in array constants are not."""
 
-    def replaced(found: re.Match[str]) -> str:
-        if found["number"] is None:
-            return found[0]
-        cell = numbers[float(found["number"])]
+    def replaced(match: re.Match[str]) -> str:
+        if match["number"] is None:
+            return match[0]
+        cell = numbers[float(match["number"])]
         return f"{cell.sheet}!$A${cell.row}"
 
     return _PLAIN.sub(replaced, text)
@@ -131,7 +131,7 @@ def with_cells(text: str, numbers: Mapping[float, Cell]) -> str:
 
 def numbers_in(text: str) -> set[float]:
     """The numbers that `with_cells` replaces."""
-    return {float(found["number"]) for found in _PLAIN.finditer(text) if found["number"]}
+    return {float(result["number"]) for result in _PLAIN.finditer(text) if result["number"]}
 
 
 def read_table(path: Path) -> Table:
@@ -162,12 +162,12 @@ def _block(anchor: Cell, text: str) -> Iterator[tuple[tuple[int, int], object]]:
     """The cells of an array constant, (row, column) and value."""
     row, column, start = anchor.row, anchor.column, 1
     while start < len(text):
-        found = _ITEM.match(text, start)
-        assert found, f"{text!r} is no array constant"
-        if found[1].strip():
-            yield (row, column), _item(found[1].strip())
-        row, column = (row + 1, anchor.column) if found[2] == ";" else (row, column + 1)
-        start = found.end()
+        result = _ITEM.match(text, start)
+        assert result, f"{text!r} is no array constant"
+        if result[1].strip():
+            yield (row, column), _item(result[1].strip())
+        row, column = (row + 1, anchor.column) if result[2] == ";" else (row, column + 1)
+        start = result.end()
 
 
 def _item(text: str) -> object:
@@ -197,21 +197,21 @@ class Answers:
     def by_way(self, way: str) -> dict[Row, object]:
         """Row -> its value."""
         if way not in self._known:
-            found = [constant_answers(t) if way == "constant" else drawn_answers(t, way) for t in tables()]
-            self._known[way] = {row: value for answers in found for row, value in answers.items()}
+            result = [constant_answers(t) if way == "constant" else drawn_answers(t, way) for t in tables()]
+            self._known[way] = {row: value for answers in result for row, value in answers.items()}
         return self._known[way]
 
     def expected_failures(self, way: str) -> set[Row]:
         """The rows that `expected_failures.txt` names for that way."""
         rows = {(row.family, row.text): row for row in self.rows}
-        found = set()
+        result = set()
         for line in (FOLDER / "expected_failures.txt").read_text(encoding="utf-8").splitlines():
             if not line.startswith("#"):
                 which, how, _ = line.split(" | ")
                 family, _, text = which.partition(" ")
                 if how in ("all", way) or (how == "drawn" and way != "constant"):
-                    found.add(rows[family, text])
-        return found
+                    result.add(rows[family, text])
+        return result
 
 
 @pytest.fixture(scope="session")
@@ -252,8 +252,8 @@ def drawn_answers(table: Table, engine: str) -> dict[Row, object]:
     """Every row of a family, its numbers drawn."""
     lowering, draws = _drawn(table)
     faults = lowering.faults
-    found: dict[Row, object] = {row: Refused(faults[row.cell].message) for row in table.rows if row.cell in faults}
-    groups = _groups([row for row in table.rows if row not in found], engine)
+    result: dict[Row, object] = {row: Refused(faults[row.cell].message) for row in table.rows if row.cell in faults}
+    groups = _groups([row for row in table.rows if row not in result], engine)
     while groups:
         group = groups.pop()
         cells = [cell for row in group for cell in (row.cell, row.asked)]
@@ -263,8 +263,8 @@ def drawn_answers(table: Table, engine: str) -> dict[Row, object]:
         if engine == "numpy" and len(group) > 1 and evaluator._left_fast_path:
             groups += [[row] for row in group]
         else:
-            found |= {row: _seen(row, *pair) for row, pair in zip(group, batched(columns), strict=True)}
-    return found
+            result |= {row: _seen(row, *pair) for row, pair in zip(group, batched(columns), strict=True)}
+    return result
 
 
 def batched(columns: list[Held]) -> Iterator[tuple[Held, Held]]:

@@ -20,13 +20,13 @@ UNSEEN = {"NOW", "TODAY"}
 def failures(answers):
     """`failures(way)`: the rows whose answers are not met, as lines."""
 
-    def found(way):
+    def result(way):
         met = answers.by_way(way)
         return {
             row: f"{row} gives {met[row]!r}, not {row.answer!r}" for row in answers.rows if not row.is_met_by(met[row])
         }
 
-    return found
+    return result
 
 
 def test_there_are_enough_of_them_of_every_family(answers):

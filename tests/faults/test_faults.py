@@ -53,7 +53,7 @@ def test_a_writer_killed_at_any_call_leaves_a_whole_file(tmp_path, call):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_kill_while_a_kind_of_output_is_written_breaks_nothing(writers, kind, tmp_path):
-    path, found = tmp_path / f"out{ENDING.get(kind, '.xlsx')}", Found()
+    path, result = tmp_path / f"out{ENDING.get(kind, '.xlsx')}", Found()
     if kind in ("Parquet", COLUMNS):
         path = tmp_path / ("out.parquet" if kind == "Parquet" else "out.")
     if kind != COLUMNS:
@@ -68,28 +68,28 @@ def test_a_kill_while_a_kind_of_output_is_written_breaks_nothing(writers, kind, 
     if kind != COLUMNS:
         assert path.read_bytes() in writers.contents(kind)
     _write_once(writers, kind, path)
-    _check_strays(kind, path, found, "after a kill")
-    assert found.broken == []
+    _check_strays(kind, path, result, "after a kill")
+    assert result.broken == []
 
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_full_disk_breaks_nothing_and_is_told(writers, kind, tmp_path):
     """By a limit on the size of files, which anybody can set."""
-    path, found = tmp_path / f"out{ENDING.get(kind, '.xlsx')}", Found()
+    path, result = tmp_path / f"out{ENDING.get(kind, '.xlsx')}", Found()
     if kind in ("Parquet", COLUMNS):
         path = tmp_path / ("out.parquet" if kind == "Parquet" else "out.")
     if kind != COLUMNS:
         path.write_bytes(writers.contents(kind)[0])
     child = in_child(lambda: _write_limited(writers, kind, path, 1_500))
-    _check_full(writers, kind, path, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), found)
-    assert found.broken == []
-    assert found.ends == {"told that it is full": 1}
+    _check_full(writers, kind, path, os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), result)
+    assert result.broken == []
+    assert result.ends == {"told that it is full": 1}
 
 
 def test_the_campaign_of_full_disks_runs_where_none_can_be_mounted(writers):
-    found = Found()
-    fill_up(writers, "CSV", random.Random(1), found, None)
-    assert found.broken == []
+    result = Found()
+    fill_up(writers, "CSV", random.Random(1), result, None)
+    assert result.broken == []
 
 
 def test_two_writers_of_one_file_do_not_disturb_each_other(tmp_path):
@@ -140,9 +140,9 @@ def typed(book, tmp_path):
 def began(folder, is_over):
     """Wait until the run keeps columns on disk, at most a minute."""
     end = time.monotonic() + 60
-    while not (found := any(folder.glob("xlmc-*"))) and not is_over() and time.monotonic() < end:
+    while not (result := any(folder.glob("xlmc-*"))) and not is_over() and time.monotonic() < end:
         time.sleep(0.005)
-    return found
+    return result
 
 
 @pytest.fixture

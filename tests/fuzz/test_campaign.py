@@ -56,17 +56,17 @@ def hang():
 def test_what_breaks_a_child_is_a_finding(what, longest, key, monkeypatch):
     from fuzzing.inputs import Reached
 
-    found = summary(once(what), monkeypatch, longest)
-    assert found.inputs == INPUTS
-    assert set(found.found) == {key}
-    assert 0 < found.found[key].count < INPUTS
-    assert found.found[key].count + found.reached[Reached.RAN] == INPUTS
+    result = summary(once(what), monkeypatch, longest)
+    assert result.inputs == INPUTS
+    assert set(result.faults) == {key}
+    assert 0 < result.faults[key].count < INPUTS
+    assert result.faults[key].count + result.reached[Reached.RAN] == INPUTS
 
 
 def test_memory_that_was_given_back_is_counted(monkeypatch):
-    found = summary(once(lambda: len(b"x" * (64 << 20))), monkeypatch, 30.0)
-    assert not found.found
-    assert found.largest[0] > 48 << 20
+    result = summary(once(lambda: len(b"x" * (64 << 20))), monkeypatch, 30.0)
+    assert not result.faults
+    assert result.largest[0] > 48 << 20
 
 
 def test_the_folder_of_a_killed_child_is_removed_at_the_next_start(monkeypatch, tmp_path):

@@ -39,8 +39,8 @@ def test_a_formula_that_was_found(text, form, tmp_path):
     from fuzzing.inputs import Input, Kind
 
     given = Input("formula.txt", text.encode(), f"={text}", (form, "jit"))
-    found = judged("found", Kind(lambda _: given, formulas.run), 1, 1, tmp_path).finding
-    assert found is None, (found.key, found.detail)
+    result = judged("found", Kind(lambda _: given, formulas.run), 1, 1, tmp_path).finding
+    assert result is None, (result.key, result.detail)
 
 
 FORMS = ("array", "block", "dynamic")

@@ -14,8 +14,8 @@ def verdict(error):
     try:
         raise error
     except type(error) as raised:
-        found = of_error(raised)
-    return None if found is None else found.key
+        result = of_error(raised)
+    return None if result is None else result.key
 
 
 @pytest.mark.parametrize(
@@ -51,6 +51,6 @@ def test_a_finding_is_told_by_the_innermost_place_in_xlmc():
 
     with pytest.raises(TypeError) as raised:
         read_workbook(5)
-    found = of_error(raised.value)
-    assert found.key.startswith("TypeError at excel/workbook/reader.py:read_workbook:")
-    assert "TypeError: " in found.detail
+    result = of_error(raised.value)
+    assert result.key.startswith("TypeError at excel/workbook/reader.py:read_workbook:")
+    assert "TypeError: " in result.detail

@@ -68,14 +68,14 @@ def _saved_by_excel(book: openpyxl.Workbook, path: Path) -> None:
         parts = {name: package.read(name) for name in package.namelist()}
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as package:
         for name, data in parts.items():
-            found = re.fullmatch(r"xl/worksheets/sheet(\d+)\.xml", name)
-            sheet = book.sheetnames[int(found[1]) - 1] if found else ""
-            package.writestr(name, _CELL.sub(_valued(sheet, values), data.decode()) if found else data)
+            result = re.fullmatch(r"xl/worksheets/sheet(\d+)\.xml", name)
+            sheet = book.sheetnames[int(result[1]) - 1] if result else ""
+            package.writestr(name, _CELL.sub(_valued(sheet, values), data.decode()) if result else data)
 
 
 def _valued(sheet: str, values) -> Callable[[re.Match[str]], str]:
-    def write(found: re.Match[str]) -> str:
-        column, row, attributes, formula = found.groups()
+    def write(match: re.Match[str]) -> str:
+        column, row, attributes, formula = match.groups()
         value = values[sheet, int(row) - 1, openpyxl.utils.column_index_from_string(column) - 1]
         kind = {bool: ' t="b"', str: ' t="str"'}.get(type(value), "")
         text = str(int(value)) if isinstance(value, bool) else escape(value) if isinstance(value, str) else repr(value)

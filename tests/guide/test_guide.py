@@ -141,9 +141,9 @@ def test_following_the_guide_is_the_worked_example(run):
 
 @pytest.mark.parametrize("change", ["nothing", *CHANGES])
 def test_what_a_change_does(run, changed, change):
-    found = simulated(model_of(changed(CHANGES[change]))) if change in CHANGES else run
-    means = (found[name].mean.value for name in ("Nissan delta-V", "Nissan impact speed"))
-    message = " | ".join([change, f"{found.accepted:,}", *(f"{mean:.2f}" for mean in means)])
+    result = simulated(model_of(changed(CHANGES[change]))) if change in CHANGES else run
+    means = (result[name].mean.value for name in ("Nissan delta-V", "Nissan impact speed"))
+    message = " | ".join([change, f"{result.accepted:,}", *(f"{mean:.2f}" for mean in means)])
     assert f"| {message} |" in GUIDE, message
 
 

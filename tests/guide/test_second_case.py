@@ -69,13 +69,13 @@ def test_the_case_gives_what_the_page_says(book):
     (edr,) = [each for each in model.filters if "EDR delta-V" in each.name]
     assert f"a delta-V from {edr.at_least:.6g} to {edr.at_most:.6g} mph" in PROSE
     run = simulated(model)
-    found = run.agreement
+    result = run.agreement
     assert f"accepts fewer trials, {run.accepted}, and" in PROSE
-    assert f"together they keep {found.ratio.value:.3g} times" in PROSE
-    assert found.sentence.partition(":")[0] in PROSE
-    first, second = (round(100 * each.chance) for each in found.items)
+    assert f"together they keep {result.ratio.value:.3g} times" in PROSE
+    assert result.sentence.partition(":")[0] in PROSE
+    first, second = (round(100 * each.chance) for each in result.items)
     assert f"has a chance of {first} %; one as far as the camera's has a chance of {second} %" in PROSE
-    means = {(each.used.partition(" alone")[0], each.forecast): each for each in found.answers}
+    means = {(each.used.partition(" alone")[0], each.forecast): each for each in result.answers}
     used = ["no evidence", "all evidence", *(name for name, *_ in READINGS)]
     shown = [[f"{means[way, name].mean.value:.3f}" for name in FORECASTS] for way in used]
     assert [list(line[1:]) for line in MOVES] == shown

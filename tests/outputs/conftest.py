@@ -27,8 +27,8 @@ def _content(address, value):
 
 
 def _workbook(cells):
-    found = {(_cell(a).row, _cell(a).column): _content(a, value) for a, value in cells.items()}
-    return Workbook("book.xlsx", {"S": Sheet("S", "part", found)})
+    result = {(_cell(a).row, _cell(a).column): _content(a, value) for a, value in cells.items()}
+    return Workbook("book.xlsx", {"S": Sheet("S", "part", result)})
 
 
 def uniform(name, address, low, high, **more):
@@ -145,13 +145,13 @@ def rows_of():
     """A sheet's rows as lists of values, without empty cells at their ends."""
 
     def rows(sheet):
-        found = []
+        result = []
         for row in sheet.iter_rows(values_only=True):
             values = list(row)
             while values and values[-1] is None:
                 values.pop()
-            found.append(values)
-        return found
+            result.append(values)
+        return result
 
     return rows
 

@@ -22,20 +22,20 @@ def book(*rows, tables=1, columns=("Field", "Text"), from_1904=False):
 
 def test_fields_come_from_the_table_in_the_order_of_the_report_and_others_after_them():
     rows = ("Client", "A. B."), ("case NUMBER", 17.0), ("Organization", " Doe & Sons "), ("Title", "Main St")
-    found = case_of(book(*rows), {})
-    assert list(found.fields.items()) == [
+    result = case_of(book(*rows), {})
+    assert list(result.fields.items()) == [
         ("Title", "Main St"),
         ("Case number", "17"),
         ("Organisation", "Doe & Sons"),
         ("Client", "A. B."),
     ]
-    assert found.dated is None
-    assert found["Analyst"] == ""
+    assert result.dated is None
+    assert result["Analyst"] == ""
 
 
 def test_what_is_given_wins_and_an_empty_text_leaves_a_field_out():
-    found = case_of(book(("Title", "Main St"), ("Client", "A. B.")), {"title": "Elm St", "Client": ""})
-    assert dict(found.fields) == {"Title": "Elm St"}
+    result = case_of(book(("Title", "Main St"), ("Client", "A. B.")), {"title": "Elm St", "Client": ""})
+    assert dict(result.fields) == {"Title": "Elm St"}
 
 
 @pytest.mark.parametrize(
@@ -49,13 +49,13 @@ def test_what_is_given_wins_and_an_empty_text_leaves_a_field_out():
     ],
 )
 def test_a_date_may_be_a_number_of_excel_or_a_text(value, from_1904, dated, printed):
-    found = case_of(book(("Date", value), from_1904=from_1904), {})
-    assert (found.dated, found["Date"]) == (dated, printed)
+    result = case_of(book(("Date", value), from_1904=from_1904), {})
+    assert (result.dated, result["Date"]) == (dated, printed)
 
 
 def test_no_table_gives_no_fields():
-    found = case_of(book(tables=0), {})
-    assert dict(found.fields) == {}
+    result = case_of(book(tables=0), {})
+    assert dict(result.fields) == {}
 
 
 @pytest.mark.parametrize(
@@ -83,6 +83,6 @@ def test_a_text_may_hold_an_equals_sign():
 
 
 def test_a_run_reads_no_case_and_says_nothing_of_it():
-    found = read_definitions(book(("Title", "Main St")), ["numpy"])
-    assert [each.message for each in found.notices if "xlmc_case" in each.message] == []
-    assert [each.message for each in found.problems if "xlmc_case" in each.message] == []
+    result = read_definitions(book(("Title", "Main St")), ["numpy"])
+    assert [each.message for each in result.notices if "xlmc_case" in each.message] == []
+    assert [each.message for each in result.problems if "xlmc_case" in each.message] == []

@@ -63,7 +63,7 @@ def drawn(book):
 
 
 @pytest.mark.parametrize(
-    ("settings", "options", "told"),
+    ("settings", "options", "messages"),
     [
         ((), {}, DETAILED),
         ((), {"detailed": 2}, 2),
@@ -71,20 +71,20 @@ def drawn(book):
         ((["Detailed forecasts", 22],), {}, 22),
     ],
 )
-def test_charts_and_sensitivity_are_of_the_first_forecasts(make_book, tmp_path, settings, options, told):
+def test_charts_and_sensitivity_are_of_the_first_forecasts(make_book, tmp_path, settings, options, messages):
     run = xlmc.load(make_book(MANY, *settings)).simulate(**options)
-    assert len(xlmc.sensitivities(run).forecasts) == told
-    assert xlmc.sensitivities(run).omitted_forecasts == MANY - told
+    assert len(xlmc.sensitivities(run).forecasts) == messages
+    assert xlmc.sensitivities(run).omitted_forecasts == MANY - messages
     saved = openpyxl.load_workbook(run.save(tmp_path / "out.xlsx"))
-    figures, measured, said = drawn(saved)
-    assert (figures, measured) == (told, told)
+    figures, measured, message = drawn(saved)
+    assert (figures, measured) == (messages, messages)
     assert {f"Answer {k}" for k in range(MANY)} <= set(texts(saved["Results"]))
-    asking = [text for text in said if f"--detailed {MANY}" in text]
-    assert len(asking) == (2 if told < MANY else 0)
-    assert all(f" first {told} of {MANY} " in text for text in asking)
+    asking = [text for text in message if f"--detailed {MANY}" in text]
+    assert len(asking) == (2 if messages < MANY else 0)
+    assert all(f" first {messages} of {MANY} " in text for text in asking)
     page = page_text(run._run)
-    assert page.count('class="forecast"') == page.count('class="sensitivity"') == told
-    assert ("Charts are drawn of" in page) is (told < MANY)
+    assert page.count('class="forecast"') == page.count('class="sensitivity"') == messages
+    assert ("Charts are drawn of" in page) is (messages < MANY)
 
 
 def test_json_says_how_many_forecasts_it_leaves_out(make_book, run):
@@ -98,9 +98,9 @@ def test_json_says_how_many_forecasts_it_leaves_out(make_book, run):
 
 
 def test_forecasts_beyond_the_first_are_measured_where_they_are_named(run):
-    found = xlmc.sensitivities(run, forecasts=["answer 21"])
-    assert [each.forecast for each in found.forecasts] == ["Answer 21"]
-    assert [each.assumption for each in found.forecasts[0].influences] == ["a", "b"]
+    result = xlmc.sensitivities(run, forecasts=["answer 21"])
+    assert [each.forecast for each in result.forecasts] == ["Answer 21"]
+    assert [each.assumption for each in result.forecasts[0].influences] == ["a", "b"]
     with pytest.raises(SimulationError, match="There is no forecast 'answer 99'"):
         xlmc.sensitivities(run, forecasts=["answer 99"])
 

@@ -75,11 +75,11 @@ def test_trials_on_disk_go_to_parquet_by_parts_that_others_read_one_by_one(model
     start = 0
     for part, size in enumerate(sizes):
         if reader == "pandas":
-            found = file.read_row_group(part).to_pandas()
+            result = file.read_row_group(part).to_pandas()
         else:
-            found = frames.scan_parquet(path).slice(start, size).collect()
+            result = frames.scan_parquet(path).slice(start, size).collect()
         for name, values in columns.items():
-            read = np.asarray(found[name].to_numpy(), values.dtype)
+            read = np.asarray(result[name].to_numpy(), values.dtype)
             np.testing.assert_array_equal(read, values[start : start + size], strict=True)
         start += size
 
@@ -126,18 +126,18 @@ def test_an_assumption_with_the_name_of_a_forecast(make, tmp_path):
 def test_draws_that_were_not_kept_are_blank(model, tmp_path, ending, read, kept):
     run = simulated(model, keep_inputs=kept)
     Simulation(run).extract(tmp_path / f"trials.{ending}")
-    found = read(tmp_path / f"trials.{ending}")
-    assert found["width"].notna().tolist() == [index < kept for index in range(run.accepted)]
-    assert np.array_equal(found["area"], run.forecasts["area"])
+    result = read(tmp_path / f"trials.{ending}")
+    assert result["width"].notna().tolist() == [index < kept for index in range(run.accepted)]
+    assert np.array_equal(result["area"], run.forecasts["area"])
 
 
 @pytest.mark.parametrize("ending", ["csv", "parquet"])
 def test_no_accepted_trial_is_a_table_without_rows(model, tmp_path, ending):
     Simulation(simulated(model, 1)).extract(tmp_path / f"trials.{ending}")
     read = read_csv if ending == "csv" else read_parquet
-    found = read(tmp_path / f"trials.{ending}")
-    assert found.empty
-    assert len(found.columns) == 4
+    result = read(tmp_path / f"trials.{ending}")
+    assert result.empty
+    assert len(result.columns) == 4
 
 
 def test_parquet_knows_the_record_and_the_units(model, tmp_path):

@@ -24,11 +24,11 @@ RANDOM = np.random.default_rng(11)
 
 def test_shift_and_narrowing_are_those_of_the_marginals():
     prior, accepted = RANDOM.normal(10.0, 2.0, 50_000), RANDOM.normal(11.0, 1.0, 20_000)
-    found = filter_effect(prior, accepted)
-    assert found.shift.value == pytest.approx((accepted.mean() - prior.mean()) / prior.std(ddof=1))
-    assert found.narrowing.value == pytest.approx(accepted.std(ddof=1) / prior.std(ddof=1))
-    assert abs(found.shift.value - 0.5) < 4 * found.shift.error
-    assert abs(found.narrowing.value - 0.5) < 4 * found.narrowing.error
+    result = filter_effect(prior, accepted)
+    assert result.shift.value == pytest.approx((accepted.mean() - prior.mean()) / prior.std(ddof=1))
+    assert result.narrowing.value == pytest.approx(accepted.std(ddof=1) / prior.std(ddof=1))
+    assert abs(result.shift.value - 0.5) < 4 * result.shift.error
+    assert abs(result.narrowing.value - 0.5) < 4 * result.narrowing.error
 
 
 def test_errors_are_what_other_seeds_would_change():
@@ -40,26 +40,26 @@ def test_errors_are_what_other_seeds_would_change():
 
 
 def test_marginals_leave_out_draws_that_are_errors():
-    found = marginal(np.array([1.0, np.nan, 3.0]))
-    assert (found.trials, found.mean.value) == (2, 2.0)
-    assert list(found.percentiles) == [5.0, 50.0, 95.0]
+    result = marginal(np.array([1.0, np.nan, 3.0]))
+    assert (result.trials, result.mean.value) == (2, 2.0)
+    assert list(result.percentiles) == [5.0, 50.0, 95.0]
 
 
 @pytest.mark.parametrize(
     ("prior", "accepted"), [([2.0] * 9, [2.0] * 3), ([], []), ([1.0], [1.0]), ([1.0, 2.0, 3.0], [])]
 )
 def test_where_there_is_nothing_to_compare_there_is_no_number(prior, accepted):
-    found = filter_effect(np.array(prior), np.array(accepted))
-    assert np.isnan(found.shift.value)
-    assert np.isnan(found.narrowing.value)
-    assert found.shift.error is None
-    assert found.narrowing.error is None
+    result = filter_effect(np.array(prior), np.array(accepted))
+    assert np.isnan(result.shift.value)
+    assert np.isnan(result.narrowing.value)
+    assert result.shift.error is None
+    assert result.narrowing.error is None
 
 
 def test_a_single_accepted_trial_has_a_shift_without_an_error():
-    found = filter_effect(np.array([1.0, 2.0, 3.0]), np.array([3.0]))
-    assert (found.shift.value, found.shift.error) == (pytest.approx(1.0), None)
-    assert np.isnan(found.narrowing.value)
+    result = filter_effect(np.array([1.0, 2.0, 3.0]), np.array([3.0]))
+    assert (result.shift.value, result.shift.error) == (pytest.approx(1.0), None)
+    assert np.isnan(result.narrowing.value)
 
 
 def test_without_filters_each_assumption_is_sorted_once(make, monkeypatch, package_of):
@@ -73,18 +73,18 @@ def test_without_filters_each_assumption_is_sorted_once(make, monkeypatch, packa
     assert len(sorted_columns) == 3
 
 
-@pytest.mark.parametrize(("count", "told"), [(DRAWN, 20_000), (DRAWN + 1, 10_000), (DRAWN + 20, 9_000)])
-def test_of_many_assumptions_fewer_draws_before_filtering_are_summarised(make, monkeypatch, count, told):
+@pytest.mark.parametrize(("count", "messages"), [(DRAWN, 20_000), (DRAWN + 1, 10_000), (DRAWN + 20, 9_000)])
+def test_of_many_assumptions_fewer_draws_before_filtering_are_summarised(make, monkeypatch, count, messages):
     monkeypatch.setattr(module, "_TOLD", 10_000 * (DRAWN + 1) + 5)
     monkeypatch.setattr(module, "_LEAST_TOLD", 9_000)
     cells = {f"A{k}": 0.5 for k in range(1, count + 1)} | {"B1": f"=SUM(A1:A{count})"}
     assumptions = [make.uniform(f"a{k}", f"A{k}", 0.0, 1.0) for k in range(1, count + 1)]
     run = make.simulate(cells, assumptions, [make.forecast("sum", "B1")], trials=20_000)
-    found = filter_effect_of(run, "a1")
-    assert found.prior == marginal(run.prior["a1"][:told])
-    assert found.prior.trials == told_of_prior(run) == told
-    assert found.accepted.trials == 20_000
-    assert any(f"he first {told:,} trials" in each for each in assumption_remarks(run))
+    result = filter_effect_of(run, "a1")
+    assert result.prior == marginal(run.prior["a1"][:messages])
+    assert result.prior.trials == told_of_prior(run) == messages
+    assert result.accepted.trials == 20_000
+    assert any(f"he first {messages:,} trials" in each for each in assumption_remarks(run))
 
 
 @pytest.mark.parametrize("missing", [False, True])
@@ -99,11 +99,11 @@ def test_what_is_known_of_an_assumption_does_not_hold_the_run(make):
     run = make.simulate(
         {"A1": 0.5, "B1": "=A1"}, [make.uniform("a", "A1", 0.0, 1.0)], [make.forecast("y", "B1")], trials=100
     )
-    found, gone = filter_effect_of(run, "a"), weakref.ref(run)
+    result, gone = filter_effect_of(run, "a"), weakref.ref(run)
     del run
     gc.collect()
     assert gone() is None
-    assert found.prior.trials == found.accepted.trials == 100
+    assert result.prior.trials == result.accepted.trials == 100
 
 
 @pytest.mark.parametrize("weighted", [False, True])
@@ -121,14 +121,14 @@ def test_what_is_known_of_an_assumption_does_not_hold_the_run(make):
 def test_shapes_count_each_draw_in_the_bin_that_holds_it(draw, weighted):
     accepted = draw(2_000)
     prior, weights = np.concatenate([accepted[:500], draw(1_000)]), RANDOM.random(2_000) if weighted else None
-    found = shapes(prior, accepted, weights)
+    result = shapes(prior, accepted, weights)
     known = ~np.isnan(accepted)
     w = np.ones(known.sum()) if weights is None else weights[known]
-    counted, last = [], found.edges.size - 2
-    for index, (low, high) in enumerate(zip(found.edges, found.edges[1:], strict=False)):
+    counted, last = [], result.edges.size - 2
+    for index, (low, high) in enumerate(zip(result.edges, result.edges[1:], strict=False)):
         inside = (accepted[known] >= low) & ((accepted[known] < high) | ((index == last) & (accepted[known] == high)))
         counted.append(w[inside].sum() / w.sum())
-    assert found.accepted == pytest.approx(counted, rel=1e-12)
+    assert result.accepted == pytest.approx(counted, rel=1e-12)
 
 
 def test_shapes_are_of_the_first_assumptions_and_made_once(make, monkeypatch):

@@ -166,21 +166,21 @@ PARTS = {
 @pytest.mark.parametrize(("values", "parts"), PARTS.values(), ids=PARTS)
 def test_parts_of_bins_hold_the_trials_of_the_bins(values, parts):
     bins = histogram(values, 0.0, 1.0)
-    found = bins.in_parts(Sample.of(values), 20)
-    assert found.shape == (bins.edges.size, parts)
-    assert found.sum(axis=1).tolist() == (bins.inside + bins.outside).tolist()
+    result = bins.in_parts(Sample.of(values), 20)
+    assert result.shape == (bins.edges.size, parts)
+    assert result.sum(axis=1).tolist() == (bins.inside + bins.outside).tolist()
 
 
 def test_parts_of_bins_are_equally_wide():
     values = np.linspace(0.0, 10.0, 10_001)
     bins = histogram(values, 0.0, 1.0)
-    found = bins.in_parts(Sample.of(values), 4)
+    result = bins.in_parts(Sample.of(values), 4)
     edges = np.append((bins.edges[:, None] + np.arange(4) * bins.width / 4).ravel(), bins.upper_edges[-1])
     expected = [np.count_nonzero((values >= low) & (values < high)) for low, high in pairwise(edges)]
-    assert found.ravel().tolist() == expected
+    assert result.ravel().tolist() == expected
 
 
-@pytest.mark.parametrize(("far", "said"), [(1, "0 trials below and 1 above"), (-1, "1 trial below and 0 above")])
-def test_what_is_not_drawn_is_said_with_its_noun(far, said):
+@pytest.mark.parametrize(("far", "message"), [(1, "0 trials below and 1 above"), (-1, "1 trial below and 0 above")])
+def test_what_is_not_drawn_is_said_with_its_noun(far, message):
     bins = histogram(np.append(np.linspace(-1.0, 1.0, 999), 1e6 * far), 0.0, 1.0)
-    assert not_drawn(bins) == f" Not drawn: {said}."
+    assert not_drawn(bins) == f" Not drawn: {message}."

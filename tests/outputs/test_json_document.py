@@ -94,18 +94,18 @@ def changes():
 
 @pytest.mark.parametrize(("path", "value"), changes())
 def test_the_schema_refuses_what_is_no_document(run, validator, path, value):
-    found = json.loads(json.dumps(document(run)))
-    inner = found
+    result = json.loads(json.dumps(document(run)))
+    inner = result
     for key in path[:-1]:
         inner = inner[key]
     inner[path[-1]] = value
     with pytest.raises(jsonschema.ValidationError):
-        validator.validate(found)
+        validator.validate(result)
 
 
 def test_every_statistic_is_there_to_the_last_bit(run):
-    found = json.loads(json.dumps(document(run)))
-    for each in found["forecasts"]:
+    result = json.loads(json.dumps(document(run)))
+    for each in result["forecasts"]:
         expected = run[each["name"]].statistics
         assert each["trials"] == expected.trials
         for name in STATISTICS:
@@ -117,8 +117,8 @@ def test_every_statistic_is_there_to_the_last_bit(run):
             assert_same(each["central_range"][end], estimate)
         if each["certainty"] is not None:
             assert_same(each["certainty"]["probability_above"], expected.probability_above)
-    assert [each["certainty"] is None for each in found["forecasts"]] == [False, True]
-    assert_same(found["trials"]["acceptance"], run.acceptance)
+    assert [each["certainty"] is None for each in result["forecasts"]] == [False, True]
+    assert_same(result["trials"]["acceptance"], run.acceptance)
 
 
 def assert_same(reported, estimate):
@@ -128,14 +128,14 @@ def assert_same(reported, estimate):
 
 
 def test_the_filters_account_for_every_trial(run):
-    found = document(run)
-    assert found["trials"]["run"] == run.trials
-    rejected = {each["name"]: each for each in found["filters"]}
+    result = document(run)
+    assert result["trials"]["run"] == run.trials
+    rejected = {each["name"]: each for each in result["filters"]}
     assert rejected["root"]["rejected"] == run.tally.rejected[0]
     assert rejected["root"]["also_by"] == {"narrow": run.tally.together[0, 1]}
     assert rejected["root"]["errors"] == sum(run.tally.errors[0].values()) > 0
     assert rejected["narrow"]["because"] == "=measured"
-    by_any = sum(each["only"] for each in found["filters"]) + rejected["root"]["also_by"]["narrow"]
+    by_any = sum(each["only"] for each in result["filters"]) + rejected["root"]["also_by"]["narrow"]
     assert run.trials - run.accepted == by_any
 
 
@@ -153,9 +153,9 @@ def test_the_record_is_the_record(run):
 
 
 def test_warnings_and_notices(none_accepted):
-    found = document(none_accepted)
-    assert found["warnings"] == none_accepted.warnings != []
-    assert [notice["message"] for notice in found["notices"]] == [n.message for n in none_accepted.notices]
+    result = document(none_accepted)
+    assert result["warnings"] == none_accepted.warnings != []
+    assert [notice["message"] for notice in result["notices"]] == [n.message for n in none_accepted.notices]
 
 
 @pytest.mark.parametrize(
@@ -179,11 +179,11 @@ def test_what_is_no_number_is_null_with_a_reason(estimate, reason):
 def test_it_is_written_whole_in_utf8(run, tmp_path):
     path = tmp_path / "run.json"
     assert save_json(run, path) == path
-    found = json.loads(path.read_text("utf-8"))
+    result = json.loads(path.read_text("utf-8"))
     assert re.fullmatch(
-        json.loads(SCHEMA.read_text(encoding="utf-8"))["properties"]["seal"]["pattern"], found.pop("seal")
+        json.loads(SCHEMA.read_text(encoding="utf-8"))["properties"]["seal"]["pattern"], result.pop("seal")
     )
-    assert found == json.loads(json.dumps(document(run)))
+    assert result == json.loads(json.dumps(document(run)))
     before = path.read_bytes()
     Simulation(run).save_json(path)
     assert path.read_bytes() == before
@@ -197,21 +197,21 @@ def test_where_it_cannot_be_written(run, tmp_path, name):
 
 
 def test_statements_certainties_pairs_and_sensitivities_are_those_of_python(run):
-    found = json.loads(json.dumps(document(run)))
-    assert found["statements"] == [{"forecast": s.forecast, "kind": s.kind, "text": s.text} for s in statements(run)]
-    for each, result in zip(found["forecasts"], run.results.values(), strict=True):
+    results = json.loads(json.dumps(document(run)))
+    assert results["statements"] == [{"forecast": s.forecast, "kind": s.kind, "text": s.text} for s in statements(run)]
+    for each, result in zip(results["forecasts"], run.results.values(), strict=True):
         for reported, certainty in zip(each["certainties"], certainties(result), strict=True):
             assert (reported["kind"], reported["words"]) == (certainty.kind, certainty.words)
             assert (reported["low"] is None) == math.isinf(certainty.low)
             assert_same(reported["share"], certainty.share)
-    [reported], [pair] = found["pairs"], pairs_of(run)
+    [reported], [pair] = results["pairs"], pairs_of(run)
     assert (reported["first"], reported["second"], reported["limits"]) == ("area", "difference", list(pair.limits))
     assert_same(reported["correlation"], pair.correlation)
     expected = sensitivities(run)
-    assert found["sensitivity"]["examined"] == expected.examined
-    for reported, each in zip(found["sensitivity"]["forecasts"], expected.forecasts, strict=True):
+    assert results["sensitivity"]["examined"] == expected.examined
+    for reported, each in zip(results["sensitivity"]["forecasts"], expected.forecasts, strict=True):
         assert [i["assumption"] for i in reported["influences"]] == [i.assumption for i in each.influences] != []
         assert_same(reported["influences"][0]["rank_correlation"], each.influences[0].rank_correlation)
         assert reported["bars"][0]["answers"] == list(each.bars[0].answers)
-    for reported, limit in zip(found["sensitivity"]["filter_limits"], expected.filter_limits, strict=True):
+    for reported, limit in zip(results["sensitivity"]["filter_limits"], expected.filter_limits, strict=True):
         assert [point["limit"] for point in reported["points"]] == [point.limit for point in limit.points]

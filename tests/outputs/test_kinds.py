@@ -66,12 +66,12 @@ def outputs(request, tmp_path_factory):
 def text_of(path):
     """All that a PDF or Word file says, without its blanks."""
     if path.suffix == ".pdf":
-        found = subprocess.run(["pdftotext", path, "-"], capture_output=True, check=True, encoding="utf-8").stdout
+        result = subprocess.run(["pdftotext", path, "-"], capture_output=True, check=True, encoding="utf-8").stdout
     else:
         document = docx.Document(str(path))
         cells = (cell.text for table in document.tables for row in table.rows for cell in row.cells)
-        found = "\n".join([*(each.text for each in document.paragraphs), *cells])
-    return re.sub(r"\s+", "", found)
+        result = "\n".join([*(each.text for each in document.paragraphs), *cells])
+    return re.sub(r"\s+", "", result)
 
 
 def forecast(document, name):
@@ -110,14 +110,14 @@ def test_certainties_of_counted_answers_are_their_shares(outputs):
     assert not forecast(document, "Avoided")["certainties"]
     rows = [[*row] for row in openpyxl.load_workbook(folder / "out.xlsx")["Certainty"].iter_rows(values_only=True)]
     for name, labels in (("Avoided", ["yes", "no"]), ("Verdict", None)):
-        told = forecast(document, name)
-        shares = {each["text"]: each["share"]["value"] for each in told["categories"]} or {
-            "yes": told["yes"]["value"],
-            "no": 1.0 - told["yes"]["value"],
+        messages = forecast(document, name)
+        shares = {each["text"]: each["share"]["value"] for each in messages["categories"]} or {
+            "yes": messages["yes"]["value"],
+            "no": 1.0 - messages["yes"]["value"],
         }
-        found = {row[1]: row[3] for row in rows if row[0] == name}
-        assert found == pytest.approx(shares)
-        assert [*found] == (labels or [*shares])
+        result = {row[1]: row[3] for row in rows if row[0] == name}
+        assert result == pytest.approx(shares)
+        assert [*result] == (labels or [*shares])
 
 
 def test_pairs_have_limits_in_the_form_of_their_cells(outputs):
@@ -126,8 +126,8 @@ def test_pairs_have_limits_in_the_form_of_their_cells(outputs):
     both = np.mean((run.forecasts["Avoided"] == 1.0) & (run.forecasts["Speed"] > 100.0))
     assert yes[0]["both_above"]["value"] == pytest.approx(both)
     sheet = openpyxl.load_workbook(folder / "out.xlsx")["Pairs"]
-    said = {cell.value for row in sheet.iter_rows() for cell in row if isinstance(cell.value, str)}
-    assert {"Avoided, yes", "Cost, threshold $260,000", "End, threshold 2026-06-07"} <= said
+    message = {cell.value for row in sheet.iter_rows() for cell in row if isinstance(cell.value, str)}
+    assert {"Avoided, yes", "Cost, threshold $260,000", "End, threshold 2026-06-07"} <= message
 
 
 NUMBER = r"-?[\d,]+(?:\.\d+)?(?:e[+-]\d+)?"
@@ -137,16 +137,16 @@ def numbers_in(text):
     """The value and the error of `$48,210 ± 870`, `5.44 ± 0.32 %` and `(2.3 ± 0.1)e-09`; one unit of the last digit."""
     power = re.search(r"\)e([+-]\d+)", text)
     scale = 10.0 ** int(power[1]) if power else 0.01 if text.endswith("%") else 1.0
-    plain = [found.replace(",", "") for found in re.findall(NUMBER, text.replace("(", "").partition(")e")[0])]
+    plain = [result.replace(",", "") for result in re.findall(NUMBER, text.replace("(", "").partition(")e")[0])]
     decimals = len(plain[-1].partition(".")[2])
     zeros = min(len(each) - len(each.rstrip("0")) for each in plain) if not decimals else 0
     return [float(each) * scale for each in plain], scale * 10.0 ** (zeros - decimals)
 
 
 def check(text, value, error):
-    found, unit = numbers_in(text)
-    assert found[0] == pytest.approx(value, abs=0.5001 * unit), text
-    assert found[1] == pytest.approx(error, abs=0.5001 * unit), text
+    result, unit = numbers_in(text)
+    assert result[0] == pytest.approx(value, abs=0.5001 * unit), text
+    assert result[1] == pytest.approx(error, abs=0.5001 * unit), text
 
 
 def table(run):
@@ -157,14 +157,14 @@ def table(run):
 @pytest.mark.parametrize("name", ["Speed", "Cost", "Rate", "Events", "Tiny", "Huge", "Fixed"])
 def test_the_table_prints_the_json_to_its_digits(outputs, name):
     run, document, _ = outputs
-    told, row = forecast(document, name), table(run)[name]
-    mean, spread = told["statistics"]["mean"], told["statistics"]["standard_deviation"]
+    messages, row = forecast(document, name), table(run)[name]
+    mean, spread = messages["statistics"]["mean"], messages["statistics"]["standard_deviation"]
     check(row["Mean or share"], mean["value"], mean["error"])
     check(row["SD"], spread["value"], spread["error"])
     ends = next(row[key] for key in row if key.endswith("range")).split(" to ")
     for text, end in zip(ends, ("low", "high"), strict=True):
         if " ± " in text:
-            check(text, told["central_range"][end]["value"], told["central_range"][end]["error"])
+            check(text, messages["central_range"][end]["value"], messages["central_range"][end]["error"])
     decimals = {len(text.partition(" ")[0].partition(".")[2]) for text in ends}
     assert len(decimals) == 1  # both ends of a range have the same
     assert not re.search(r"\de\+(0\d|1[01])\b", " ".join(row.values()))
@@ -172,14 +172,14 @@ def test_the_table_prints_the_json_to_its_digits(outputs, name):
 
 def test_dates_are_dates(outputs):
     run, document, folder = outputs
-    told, row = forecast(document, "End"), table(run)["End"]
-    day = date(1899, 12, 30) + timedelta(days=int(told["statistics"]["mean"]["value"]))
+    messages, row = forecast(document, "End"), table(run)["End"]
+    day = date(1899, 12, 30) + timedelta(days=int(messages["statistics"]["mean"]["value"]))
     assert row["Mean or share"].startswith(f"{day} ± ")
     assert row["SD"].endswith(" days")
     assert row["Base case"] == "2026-05-30"
     assert row["Threshold"] == "2026-06-07"
-    said = next(each for each in run.sentences if each.startswith("End: "))
-    assert re.search(r"between 2026-\d\d-\d\d and 2026-\d\d-\d\d$", said)
+    message = next(each for each in run.sentences if each.startswith("End: "))
+    assert re.search(r"between 2026-\d\d-\d\d and 2026-\d\d-\d\d$", message)
     assert table(run)["Duration"]["Base case"] == "3:00"
     for text in ((folder / "out.html").read_text(encoding="utf-8"), *map(text_of, sorted(folder.glob("out.[pd]*")))):
         assert str(day) in text
@@ -233,13 +233,13 @@ def test_the_window_has_forms_and_shares(outputs):
 
 def test_a_range_given_by_a_formula_stands_with_its_value(outputs):
     _, document, folder = outputs
-    said = "Low 180,000 (=Model!B3), High 252,000 (=Model!B3*1.4)"
-    assert document["assumptions"][1]["parameters"] == said
+    message = "Low 180,000 (=Model!B3), High 252,000 (=Model!B3*1.4)"
+    assert document["assumptions"][1]["parameters"] == message
     book = openpyxl.load_workbook(folder / "out.xlsx")
-    assert any(said in str(cell.value) for row in book["Assumptions"].iter_rows() for cell in row)
-    assert said in (folder / "out.html").read_text(encoding="utf-8")
+    assert any(message in str(cell.value) for row in book["Assumptions"].iter_rows() for cell in row)
+    assert message in (folder / "out.html").read_text(encoding="utf-8")
     for path in sorted(folder.glob("out.[pd]*")):
-        assert said.replace(" ", "") in text_of(path)
+        assert message.replace(" ", "") in text_of(path)
 
 
 def test_without_filters_nothing_stands_before_and_after(outputs):
@@ -307,34 +307,34 @@ def studied(tmp_path_factory):
     def run(name):
         names = [str(folder / f"{name}.{ending}") for ending in ("json", "html", "pdf", "docx", "xlsx")]
         files = [part for each in names for part in ("-o", each)]
-        found = CliRunner().invoke(xlmc, [*commands[name], *files, "--quiet"])
-        assert found.exit_code in (0, 1), found.output
-        return re.sub(r"\s+", " ", found.output), json.loads(Path(names[0]).read_text(encoding="utf-8")), folder
+        result = CliRunner().invoke(xlmc, [*commands[name], *files, "--quiet"])
+        assert result.exit_code in (0, 1), result.output
+        return re.sub(r"\s+", " ", result.output), json.loads(Path(names[0]).read_text(encoding="utf-8")), folder
 
     return run
 
 
 def test_a_comparison_writes_every_forecast_in_its_form(studied):
     text, document, folder = studied("compare")
-    found = {each["name"]: each for each in document["forecasts"]}
+    result = {each["name"]: each for each in document["forecasts"]}
     assert "lost" not in text
     assert "is a number in none" not in text
     for name, before, after in (("Cost", "$", ""), ("Fixed", "", " EUR"), ("Rate", "", " %")):
-        change, factor = found[name]["mean"], 100.0 if name == "Rate" else 1.0
+        change, factor = result[name]["mean"], 100.0 if name == "Rate" else 1.0
         for key in ("first", "second", "difference"):
             shown = format_estimate(factor * abs(change[key]["value"]), factor * change[key]["error"])
             assert f"{'-' * (change[key]['value'] < 0)}{before}{shown}{after}" in text, (name, key)
-    day = date(1899, 12, 30) + timedelta(days=int(found["End"]["mean"]["first"]["value"]))
+    day = date(1899, 12, 30) + timedelta(days=int(result["End"]["mean"]["first"]["value"]))
     assert f"{day} ± " in text
     assert "P(> 2026-06-07)" in text
     assert not re.search(r"\b46[,.]?\d{3}\b", text)  # no serial number of a day
     for name, labels in (("Avoided", {"yes"}), ("Never", {"yes"}), ("Verdict", {"low", "middle", "high"})):
-        assert set(found[name]["shares"]) == labels
-        for each in found[name]["shares"].values():
+        assert set(result[name]["shares"]) == labels
+        for each in result[name]["shares"].values():
             difference = each["difference"]
             assert format_estimate(100 * difference["value"], 100 * difference["error"]) in text
-    assert found["Never"]["verdict"] == "within"
-    assert found["Verdict"]["verdict"] == "beyond"
+    assert result["Never"]["verdict"] == "within"
+    assert result["Verdict"]["verdict"] == "beyond"
     page = re.sub(r"\s+", "", (folder / "compare.html").read_text(encoding="utf-8"))
     for other in (page, text_of(folder / "compare.pdf"), text_of(folder / "compare.docx")):
         assert f"{day}±" in other
@@ -356,21 +356,21 @@ def test_a_screening_judges_texts_and_dates_as_such(studied):
 
 def test_methods_write_every_forecast_in_its_form(tmp_path):
     model = load_model(write_book(tmp_path / "book.xlsx", filtered=True))
-    found = study(model, reference_trials=4_096, trials=1_024, replicates=2, patience=0.2)
-    told = study_json(found)["reference"]["forecasts"]
-    rows = {row[0]: row for row in reference_table(found).rows}
+    result = study(model, reference_trials=4_096, trials=1_024, replicates=2, patience=0.2)
+    messages = study_json(result)["reference"]["forecasts"]
+    rows = {row[0]: row for row in reference_table(result).rows}
     assert "Verdict" not in rows
-    assert any(each.endswith("texts: Verdict.") for each in recommendation(found))
+    assert any(each.endswith("texts: Verdict.") for each in recommendation(result))
     for name, factor in (("Cost", 1.0), ("Fixed", 1.0), ("Rate", 100.0), ("Speed", 1.0), ("Avoided", 100.0)):
-        mean = told[name]["mean"]
+        mean = messages[name]["mean"]
         assert format_estimate(factor * mean["value"], factor * mean["error"]) in rows[name][2], name
-    day = date(1899, 12, 30) + timedelta(days=int(told["End"]["mean"]["value"]))
+    day = date(1899, 12, 30) + timedelta(days=int(messages["End"]["mean"]["value"]))
     assert rows["End"][2].startswith(f"{day} ± ")
     assert rows["Avoided"][3:] == ("–",) * 3
-    assert not any(found.converges("Avoided", each) for each in STATISTICS if each != "mean")
-    written = [cell for each in (bounds_table(found), forecast_table(found)) for row in each.rows for cell in row]
+    assert not any(result.converges("Avoided", each) for each in STATISTICS if each != "mean")
+    written = [cell for each in (bounds_table(result), forecast_table(result)) for row in each.rows for cell in row]
     assert not any(re.search(r"\b46[,.]?\d{3}\b", cell) for cell in written)
-    assert not any(re.search(r"\de\+", each) for each in recommendation(found))
+    assert not any(re.search(r"\de\+", each) for each in recommendation(result))
 
 
 def test_scenarios_compare_counted_answers_by_their_shares(tmp_path):
@@ -384,11 +384,11 @@ def test_scenarios_compare_counted_answers_by_their_shares(tmp_path):
     book.save(path)
     run = load(path).simulate(trials=1_000, scenarios=True)._run
     _, slower = scenario_answers(run)
-    found = {each.forecast.name: each for each in slower.forecasts}
-    assert found["Never"].differences["mean"].error > 0.0
-    assert found["Verdict"].text == "middle"
-    assert found["Verdict"].differences["mean"].error > 0.0
-    assert found["Avoided"].differences["mean"].value > 0.0
+    result = {each.forecast.name: each for each in slower.forecasts}
+    assert result["Never"].differences["mean"].error > 0.0
+    assert result["Verdict"].text == "middle"
+    assert result["Verdict"].differences["mean"].error > 0.0
+    assert result["Avoided"].differences["mean"].value > 0.0
 
 
 def test_a_text_that_is_another_in_every_trial_fills_no_output(tmp_path):
@@ -408,20 +408,20 @@ def test_a_text_that_is_another_in_every_trial_fills_no_output(tmp_path):
     run = load(tmp_path / "labels.xlsx").simulate(trials=5_000)
     shares = run["Label"].categories
     left = 5_000 - sum(round(5_000 * share.value) for share in [*shares.values()][:20])
-    said = f"{len(shares) - 20:,} rarer texts"
+    message = f"{len(shares) - 20:,} rarer texts"
     run.save_page(tmp_path / "out.html")
     page = (tmp_path / "out.html").read_text(encoding="utf-8")
-    assert said in page
+    assert message in page
     assert page.count("<tr") < 200
     for name in ("out.pdf", "out.docx"):
         run.save_report(tmp_path / name)
         text = text_of(tmp_path / name)
-        assert said.replace(" ", "") in text, name
+        assert message.replace(" ", "") in text, name
         assert len(text) < 20_000, name
     run.save(tmp_path / "out.xlsx")
     results = openpyxl.load_workbook(tmp_path / "out.xlsx")
     for name, column in (("Results", 1), ("Certainty", 2)):
-        rows = [row for row in results[name].iter_rows(values_only=True) if row[column - 1] == said]
+        rows = [row for row in results[name].iter_rows(values_only=True) if row[column - 1] == message]
         assert [row[column] for row in rows] == [left], name
         assert results[name].max_row < 100, name
 

@@ -54,11 +54,11 @@ def runs(book):
     """The run in the usual style and in one whose signs stand nowhere else, each with its model."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setitem(STYLES, MARKED, (THOUSANDS, DECIMAL))
-        found = []
+        result = []
         for style in (None, MARKED):
             model = load_model(book)
-            found.append(run_model(model, RunOptions(trials=20_000, number_style=style)))
-        yield found
+            result.append(run_model(model, RunOptions(trials=20_000, number_style=style)))
+        yield result
 
 
 def in_usual(text):
@@ -82,8 +82,10 @@ def sheets(run, folder):
         drawn = [
             package.read(name).decode() for name in package.namelist() if "/charts/" in name or "/drawings/" in name
         ]
-    said = [text for each in drawn for found in re.findall(r'<a:t>([^<]*)|descr="([^"]*)"', each) for text in found]
-    return [value for place, value in cells if isinstance(value, str) and not place.startswith("Record!")] + said
+    message = [
+        text for each in drawn for result in re.findall(r'<a:t>([^<]*)|descr="([^"]*)"', each) for text in result
+    ]
+    return [value for place, value in cells if isinstance(value, str) and not place.startswith("Record!")] + message
 
 
 def word(run, _):
@@ -120,17 +122,19 @@ def test_programs_read_numbers_and_texts_in_the_usual_style(runs):
 
 def test_a_thread_of_the_window_writes_in_the_style_of_the_workbook(tmp_path):
     model = load_model(write_book(tmp_path / "book.xlsx", filtered=True, settings=[["Number style", "1.234,5"]]))
-    session, told = Session(model), []
+    session, messages = Session(model), []
 
     def work():
-        told.extend(session.greeting())
+        messages.extend(session.greeting())
         while (job := session.job()) is not None:
-            told.extend(session.finish(job, job.run(lambda: True, lambda _: None, lambda: 0.0)))
+            messages.extend(session.finish(job, job.run(lambda: True, lambda _: None, lambda: 0.0)))
 
     thread = Thread(target=work)
     thread.start()
     thread.join()
-    text = json.dumps([{k: v for k, v in each.items() if k not in ("shapes",)} for each in told], ensure_ascii=False)
+    text = json.dumps(
+        [{k: v for k, v in each.items() if k not in ("shapes",)} for each in messages], ensure_ascii=False
+    )
     assert "4.000 trials" in text
     assert re.search(r"\d,\d+ ± \d", text)
     assert '"signs": {"thousands": ".", "decimal": ","}' in text
@@ -183,10 +187,10 @@ def test_a_command_prints_in_the_style_of_the_book(tmp_path, monkeypatch, comman
         folder.mkdir()
         path = write_book(folder / "book.xlsx", filtered=True, settings=settings)
         first, *more = command
-        found = CliRunner().invoke(xlmc, [first, str(path), *([str(path)] if first == "compare" else []), *more])
-        assert found.exit_code in (0, 1)
-        assert found.exception is None or isinstance(found.exception, SystemExit)
-        printed.append(found.stdout.replace(str(folder), "").splitlines())
+        result = CliRunner().invoke(xlmc, [first, str(path), *([str(path)] if first == "compare" else []), *more])
+        assert result.exit_code in (0, 1)
+        assert result.exception is None or isinstance(result.exception, SystemExit)
+        printed.append(result.stdout.replace(str(folder), "").splitlines())
     usual, marked = printed
     assert [line for line in marked if UNSTYLED.search(NOT_NUMBERS.sub("", line))] == []
     assert [" ".join(in_usual(line).split()) for line in marked] == [" ".join(line.split()) for line in usual]

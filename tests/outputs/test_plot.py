@@ -234,9 +234,9 @@ def test_what_never_varies_follows_nothing(make):
 def test_trials_are_drawn_in_proportion_to_their_weights():
     weights = np.array([1.0, 0.0, 0.25, 0.5, 0.25, 1.0] * 50)
     rows = Weighting(weights, 0.5, 1.0).even_rows(weights.size)
-    found = np.bincount(rows, minlength=weights.size).reshape(-1, 6).sum(axis=0)
+    result = np.bincount(rows, minlength=weights.size).reshape(-1, 6).sum(axis=0)
     assert rows.size == int(weights.sum() ** 2 / (weights**2).sum())
-    assert found == pytest.approx(rows.size * weights.reshape(-1, 6).sum(axis=0) / weights.sum(), abs=2.0)
+    assert result == pytest.approx(rows.size * weights.reshape(-1, 6).sum(axis=0) / weights.sum(), abs=2.0)
     assert not Weighting(np.zeros(3), 0.0, 0.0).even_rows(3).size
 
 

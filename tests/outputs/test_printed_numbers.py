@@ -93,12 +93,12 @@ def printed(tmp_path_factory):
         files = [f"{stem}.{ending}" for ending in ("json", *ENDINGS)]
         words = [each.format(**books) for each in COMMANDS[command]]
         outputs = [part for each in files for part in ("-o", each)]
-        found = CliRunner().invoke(xlmc, ["--quiet", *words, *outputs], env={"COLUMNS": "200"})
-        assert found.exit_code in (0, 1), found.output
+        result = CliRunner().invoke(xlmc, ["--quiet", *words, *outputs], env={"COLUMNS": "200"})
+        assert result.exit_code in (0, 1), result.output
         texts = {ending: text_of(Path(f"{stem}.{ending}")) for ending in ENDINGS[:-1]}
         texts["tables"] = text_of(Path(f"{stem}.html"), ("script", "style", "svg", "nav"))
         document = json.loads(Path(files[0]).read_text(encoding="utf-8"))
-        return document, texts | {"terminal": found.output}, Path(f"{stem}.xlsx")
+        return document, texts | {"terminal": result.output}, Path(f"{stem}.xlsx")
 
     return run
 
@@ -138,9 +138,9 @@ def text_of(path, unseen=("script", "style")):
 def estimates_in(value):
     """Yield the value and the error of each estimate in a document."""
     if isinstance(value, dict):
-        found = value.get("value", value.get("rms"))  # root mean squares of `methods` have errors, too
-        if isinstance(found, int | float) and isinstance(value.get("error"), int | float):
-            yield float(found), float(value["error"])
+        result = value.get("value", value.get("rms"))  # root mean squares of `methods` have errors, too
+        if isinstance(result, int | float) and isinstance(value.get("error"), int | float):
+            yield float(result), float(value["error"])
         for name, error in value.get("standard_errors", {}).items():
             yield value["parameters"][name], float("nan") if error is None else error
         for each in value.values():
@@ -178,22 +178,22 @@ def told(text):
     A day is told without its time, and a time without its seconds.
     """
     text = re.sub(r"\s+", " ", text)
-    for found in MOMENT.finditer(text):
-        if found["day"]:
-            value, unit = float((date.fromisoformat(found["day"]) - date(1899, 12, 30)).days), 1.0
+    for result in MOMENT.finditer(text):
+        if result["day"]:
+            value, unit = float((date.fromisoformat(result["day"]) - date(1899, 12, 30)).days), 1.0
         else:
-            value, unit = (int(found["hours"]) + int(found["minutes"]) / 60.0) / 24.0, 1.0 / 1440.0
-        yield value + unit / 2.0, unit / 2.0 + 1e-5, *read(found["error"], None), found[0], FACTORS
+            value, unit = (int(result["hours"]) + int(result["minutes"]) / 60.0) / 24.0, 1.0 / 1440.0
+        yield value + unit / 2.0, unit / 2.0 + 1e-5, *read(result["error"], None), result[0], FACTORS
     text = MOMENT.sub(" ", text)
-    for found in WITH_ERROR.finditer(text):
-        power = found["power"]
-        if power is None and found[0].find("%") < 0 and text[found.start() - 1 : found.start()] == "(":
+    for result in WITH_ERROR.finditer(text):
+        power = result["power"]
+        if power is None and result[0].find("%") < 0 and text[result.start() - 1 : result.start()] == "(":
             continue  # a line of a narrow column, whose power of ten stands in the next
-        value, half = read(found["value"] or found["far"], power)
-        error, half_error = read(found["error"] or found["far_error"], power)
+        value, half = read(result["value"] or result["far"], power)
+        error, half_error = read(result["error"] or result["far_error"], power)
         if not value:  # a zero has no digits that say how it was rounded: it was as its error was
             half = max(half, half_error)
-        yield value, half, error, half_error, found[0], (1.0,)
+        yield value, half, error, half_error, result[0], (1.0,)
 
 
 @pytest.mark.parametrize("output", ["terminal", "html", "pdf", "docx"])
@@ -231,8 +231,8 @@ def strings_in(value):
 
 def without_certainty(text):
     """Leave out the page's table of ranges, whose ends are rounded: the trials in these are counted for it alone."""
-    before, found, after = text.partition("The share of the accepted trials below")
-    return before + after[max(after.find("Forecasts two at a time"), 0) :] if found else text
+    before, result, after = text.partition("The share of the accepted trials below")
+    return before + after[max(after.find("Forecasts two at a time"), 0) :] if result else text
 
 
 @pytest.mark.parametrize("output", ["terminal", "tables", "docx"])
@@ -240,9 +240,9 @@ def without_certainty(text):
 def test_every_number_is_one_of_the_json(printed, command, output):
     """Also one without an error: a base case, a threshold, a percentile's end, a count, a tolerance."""
     document, texts, _ = printed(command)
-    said = [read(each[1], None)[0] for text in strings_in(document) for each in ALONE.finditer(text)]
-    found = np.array([*numbers_in(document), *derived(document)])
-    known = np.sort(np.abs(np.concatenate([np.outer(found, FACTORS).ravel(), said])))
+    message = [read(each[1], None)[0] for text in strings_in(document) for each in ALONE.finditer(text)]
+    result = np.array([*numbers_in(document), *derived(document)])
+    known = np.sort(np.abs(np.concatenate([np.outer(result, FACTORS).ravel(), message])))
     text = without_certainty(re.sub(r"\s+", " ", texts[output]))
     for words in OF_THE_RECORD:
         text = text.partition(words)[0]
@@ -268,8 +268,8 @@ NOISE = re.compile(
 def test_no_number_is_noise(printed, command, output):
     _, texts, _ = printed(command)
     text = texts[output].partition("SHA-256 of every")[0].partition("Every number is in full")[0]  # Record
-    found = [text[max(0, each.start() - 40) : each.end() + 20] for each in NOISE.finditer(text)]
-    assert found == []
+    result = [text[max(0, each.start() - 40) : each.end() + 20] for each in NOISE.finditer(text)]
+    assert result == []
 
 
 @pytest.mark.parametrize("output", ["terminal", "html", "pdf", "docx"])
@@ -318,9 +318,9 @@ def test_a_number_on_a_sheet_is_a_number_of_the_json(printed, command):
     """Those of result sheets to the last bits, those of studies, which are texts made numbers, to their digits."""
     document, _, path = printed(command)
     is_run = command.startswith(("simulate", "report"))
-    found = [*numbers_in(document), *derived(document)]
+    result = [*numbers_in(document), *derived(document)]
     factors = (1.0,) if is_run else FACTORS
-    known = np.sort(np.abs(np.outer(found, factors)).ravel())
+    known = np.sort(np.abs(np.outer(result, factors)).ravel())
     lost = []
     for sheet in openpyxl.load_workbook(path):
         for row in sheet.iter_rows() if sheet.title not in NOT_OF_THE_RUN else ():
@@ -351,8 +351,8 @@ def test_assumptions_that_are_percentages_and_money_are_told_as_such(printed):
     for text in (*texts.values(), xlmc_check(path.parent / "filtered.xlsx")):
         assert not re.search(r"Low 0\.3\b", text)
     mean = share["accepted"]["mean"]
-    told = format_estimate(100.0 * mean["value"], 100.0 * mean["error"])
-    assert all(f"{told} %" in re.sub(r"\s+", " ", texts[ending]) for ending in ("html", "pdf", "docx"))
+    messages = format_estimate(100.0 * mean["value"], 100.0 * mean["error"])
+    assert all(f"{messages} %" in re.sub(r"\s+", " ", texts[ending]) for ending in ("html", "pdf", "docx"))
     (row,) = [
         [cell.number_format for cell in row]
         for row in openpyxl.load_workbook(path)["Sensitivity"].iter_rows()
@@ -365,40 +365,40 @@ def test_calculated_cells_are_told_in_their_formats(printed):
     _, _, path = printed("simulate")
     book = str(path.parent / "filtered.xlsx")
     words = ["calculate", book, "--cells", "Model!B10:B21"]
-    found = CliRunner().invoke(xlmc, [*words, "--number-style", "1.234,5"], env={"COLUMNS": "200"})
-    shown = dict(line.split(maxsplit=1) for line in found.output.splitlines() if "Model!" in line)
+    result = CliRunner().invoke(xlmc, [*words, "--number-style", "1.234,5"], env={"COLUMNS": "200"})
+    shown = dict(line.split(maxsplit=1) for line in result.output.splitlines() if "Model!" in line)
     exact = json.loads(CliRunner().invoke(xlmc, [*words, "--json"]).output)
     assert shown["Model!B12"].strip() == str(date(1899, 12, 30) + timedelta(days=exact["Model!B12"]))
     assert shown["Model!B13"].strip() == f"{100 * exact['Model!B13']:.6g} %".replace(".", ",")
     assert shown["Model!B11"].strip() == f"${exact['Model!B11']:,.0f}".replace(",", ".")
-    assert "e+" not in found.output
+    assert "e+" not in result.output
 
 
 def printed_by(*words):
     """What a command prints on a wide terminal, in lines whose columns stand one space apart."""
-    found = CliRunner().invoke(xlmc, list(map(str, words)), env={"COLUMNS": "200"})
-    assert found.exit_code in (0, 1), found.output
-    return "\n".join(re.sub(r" {2,}", " ", line).strip() for line in found.output.splitlines())
+    result = CliRunner().invoke(xlmc, list(map(str, words)), env={"COLUMNS": "200"})
+    assert result.exit_code in (0, 1), result.output
+    return "\n".join(re.sub(r" {2,}", " ", line).strip() for line in result.output.splitlines())
 
 
 def test_check_says_of_definitions_what_the_json_of_a_run_says(printed):
     document, _, path = printed("simulate")
-    told = printed_by("check", path.parent / "filtered.xlsx")
+    messages = printed_by("check", path.parent / "filtered.xlsx")
     for each in document["assumptions"]:
-        assert f"{each['distribution']}: {each['parameters']}" in told
+        assert f"{each['distribution']}: {each['parameters']}" in messages
     for each in (*document["filters"], *document["scenarios"][1:]):
-        assert f"{each['name']} {each.get('changes', '')}" in told
-        assert each.get("limits", "") in told
+        assert f"{each['name']} {each.get('changes', '')}" in messages
+        assert each.get("limits", "") in messages
     changes = {each["name"]: each["changes"] for each in document["scenarios"]}
     assert changes["dearer"] == "Cost in High = $300,000; Model!B31 = $5.50; Share in from 35 % to 45 %"
     assert changes["known"] == "Share in = 45 %; Limit at most 38"
-    assert "Order Model!B30 pieces 20; 40" in told
-    assert "Price Model!B31 $5; $6" in told
+    assert "Order Model!B30 pieces 20; 40" in messages
+    assert "Price Model!B31 $5; $6" in messages
 
 
 def test_scenario_shows_cells_in_their_formats(printed):
-    told = printed_by("scenario", printed("simulate")[2].parent / "filtered.xlsx", "cheap")
-    assert "Model!B31 $5 $4" in told
+    messages = printed_by("scenario", printed("simulate")[2].parent / "filtered.xlsx", "cheap")
+    assert "Model!B31 $5 $4" in messages
 
 
 def test_limits_of_filters_are_written_as_their_cells(tmp_path):
@@ -408,10 +408,10 @@ def test_limits_of_filters_are_written_as_their_cells(tmp_path):
     del book["Tables"].tables["xlmc_filters"], book["More"].tables["xlmc_scenarios"]
     add_tables(book.create_sheet("Limits"), {"xlmc_filters": limits})
     book.save(tmp_path / "book.xlsx")
-    told = printed_by("check", tmp_path / "book.xlsx")
-    assert "at least 2026-03-19" in told
-    assert "at least 28 %" in told
-    assert "at least $216,000 (=Model!B3*1.2)" in told
+    messages = printed_by("check", tmp_path / "book.xlsx")
+    assert "at least 2026-03-19" in messages
+    assert "at least 28 %" in messages
+    assert "at least $216,000 (=Model!B3*1.2)" in messages
 
 
 def test_prepare_shows_cells_in_their_formats(tmp_path):
@@ -419,9 +419,9 @@ def test_prepare_shows_cells_in_their_formats(tmp_path):
     for name in ("Tables", "More"):
         del book[name]
     book.save(tmp_path / "book.xlsx")
-    told = printed_by("prepare", tmp_path / "book.xlsx", "--assumption", "Model!B1:B7", "--number-style", "1.234,5")
+    messages = printed_by("prepare", tmp_path / "book.xlsx", "--assumption", "Model!B1:B7", "--number-style", "1.234,5")
     for cell, shown in {"B2": "$200.000", "B4": "2e-09", "B5": "3", "B6": "2026-03-01", "B7": "40 %"}.items():
-        assert f" Model!{cell} {shown}" in told
+        assert f" Model!{cell} {shown}" in messages
 
 
 def test_replay_tells_numbers_that_its_json_has(printed):
@@ -434,12 +434,12 @@ def test_replay_tells_numbers_that_its_json_has(printed):
         cell.value = edited[f"{sheet}!{cell.coordinate}"] = round(1.5 * cell.value, 3)
     changed = path.with_name("changed.xlsx")
     book.save(changed)
-    told = printed_by("replay", changed, "--quiet")
-    found = CliRunner().invoke(xlmc, ["replay", str(changed), "--quiet", "--json"])
-    differences = json.loads(found.output)["result_sheets"]["differences"]
+    messages = printed_by("replay", changed, "--quiet")
+    result = CliRunner().invoke(xlmc, ["replay", str(changed), "--quiet", "--json"])
+    differences = json.loads(result.output)["result_sheets"]["differences"]
     assert edited.items() <= {each["where"]: each["says"] for each in differences}.items()
     for each in (each for each in differences[:20] if isinstance(each["says"], float)):  # others openpyxl has changed
-        assert f"{each['where']} says {each['says']!r}, the run gives {each['gives']!r}" in told
+        assert f"{each['where']} says {each['says']!r}, the run gives {each['gives']!r}" in messages
 
 
 def test_convert_counts_the_rows_that_its_tables_have(tmp_path):
@@ -450,18 +450,18 @@ def test_convert_counts_the_rows_that_its_tables_have(tmp_path):
         sheet.cell(row, 2, f"={call}").number_format = "0.0%" if row == 3 else "General"
     sheet["A4"], sheet["B4"] = "answer", "=RiskOutput()+B1*B2*B3"
     book.save(tmp_path / "calls.xlsx")
-    told = printed_by("convert", tmp_path / "calls.xlsx", "-o", tmp_path / "tables.xlsx")
+    messages = printed_by("convert", tmp_path / "calls.xlsx", "-o", tmp_path / "tables.xlsx")
     converted = openpyxl.load_workbook(tmp_path / "tables.xlsx")
     tables = {name: ref for each in converted for name, ref in each.tables.items()}
     for kind, rows in (("xlmc_assumptions", 3), ("xlmc_forecasts", 1)):
-        assert f"{kind} {rows}" in told
+        assert f"{kind} {rows}" in messages
         first, last = (int(re.sub(r"\D", "", end)) for end in tables[kind].split(":"))
         assert last - first == rows
     for book in ("calls.xlsx", "tables.xlsx"):
-        found = printed_by("check", tmp_path / book)
-        assert "Low 1e-09, High 3e-09" in found
-        assert "Mean 1,000,000,000,000, Std dev 100,000,000,000" in found
-        assert "Low 30 %, High 50 %" in found
+        result = printed_by("check", tmp_path / book)
+        assert "Low 1e-09, High 3e-09" in result
+        assert "Mean 1,000,000,000,000, Std dev 100,000,000,000" in result
+        assert "Low 30 %, High 50 %" in result
 
 
 def xlmc_check(book):

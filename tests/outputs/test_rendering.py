@@ -217,8 +217,8 @@ def all_pages(printed):
 
 
 def _printed(piece, pixels=None):
-    found = re.findall(r'<word xMin="([\d.]+)" yMin="([\d.]+)"[^>]*>([^<]*)<', piece)
-    words = [(unescape(text), float(left), float(top)) for left, top, text in found]
+    result = re.findall(r'<word xMin="([\d.]+)" yMin="([\d.]+)"[^>]*>([^<]*)<', piece)
+    words = [(unescape(text), float(left), float(top)) for left, top, text in result]
     foot = max((top for _, _, top in words), default=0.0)
     footer = [text for text, _, top in words if foot - top < 3.0]
     return Printed(" ".join(footer[1 : footer.index("Page")]) if "Page" in footer else "", words, pixels)
@@ -233,14 +233,14 @@ def _pixels(path):
 
 def captions(pages, word):
     """Where each chart's caption begins: number -> page, left, top."""
-    found = {}
+    result = {}
     for page in pages:
         following = zip(page.words, page.words[1:], page.words[2:], strict=False)
         for (text, left, top), (second, _, _), (third, _, _) in following:
             number = {"Figure": second, "Scatter": third}.get(word) if text == word else None
             if number and re.fullmatch(r"\d+\.", number):
-                found[int(number[:-1])] = page, left, top
-    return found
+                result[int(number[:-1])] = page, left, top
+    return result
 
 
 def coloured(page, left, top):
@@ -260,9 +260,9 @@ def test_every_sheet_has_a_page_with_something_on_it(pages):
 
 @pytest.mark.parametrize(("word", "count"), [("Figure", 11), ("Scatter", 3)])
 def test_every_chart_draws_something_above_its_caption(all_pages, word, count):
-    found = captions(all_pages, word)
-    assert sorted(found) == list(range(1, count + 1))
-    for number, at in found.items():
+    result = captions(all_pages, word)
+    assert sorted(result) == list(range(1, count + 1))
+    for number, at in result.items():
         assert coloured(*at) > 0.004, f"{word} {number}"
 
 

@@ -102,8 +102,8 @@ def test_certainty(reports):
 
 def test_answers_on_the_first_sheet(reports):
     run, document, book, _ = reports
-    found = [row for row in book["Results"].iter_rows(values_only=True) if row[0] in run.forecasts]
-    rows = {row[0]: row for row in reversed(found)}  # the first of each: the errors in cells come further down
+    result = [row for row in book["Results"].iter_rows(values_only=True) if row[0] in run.forecasts]
+    rows = {row[0]: row for row in reversed(result)}  # the first of each: the errors in cells come further down
     for each in document["forecasts"]:
         mean, spread, ends = each["statistics"]["mean"], each["statistics"]["standard_deviation"], each["central_range"]
         expected = [each["name"], each["units"] or None, each["trials"], mean["value"], mean["error"]]

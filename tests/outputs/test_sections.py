@@ -111,8 +111,8 @@ def parts_of(page):
 
 def named(output):
     """The names of what an output shows, in the order of the rows."""
-    found = [row.own.get(output, (name,)) for name, row in SECTIONS.items() if output not in row.elsewhere]
-    return [*dict.fromkeys(each for names in found for each in names)]
+    result = [row.own.get(output, (name,)) for name, row in SECTIONS.items() if output not in row.elsewhere]
+    return [*dict.fromkeys(each for names in result for each in names)]
 
 
 def test_the_page_has_its_parts_in_the_order_of_the_rows(case_run):
@@ -130,10 +130,10 @@ def test_sheets_stand_in_the_order_of_the_rows(case_run, tmp_path):
     titles = {name: row.heading for name, row in SECTIONS.items()}
     expected = [titles.get(name, name) for name in named("sheets")]
     book = openpyxl.load_workbook(save(case_run, tmp_path / "results.xlsx"))
-    found = [name for name in book.sheetnames if name in expected]
-    assert found == [name for name in expected if name in found]
-    assert found[0] == "Results"
-    assert found[-2:] == ["Record", "Moon phase"]
+    result = [name for name in book.sheetnames if name in expected]
+    assert result == [name for name in expected if name in result]
+    assert result[0] == "Results"
+    assert result[-2:] == ["Record", "Moon phase"]
 
 
 def test_what_no_row_names_comes_last():
@@ -144,13 +144,13 @@ def test_what_no_row_names_comes_last():
 
 def test_long_sections_are_in_a_report_that_asks_for_them(case_run):
     long = [name for name, row in SECTIONS.items() if row.asked_for]
-    told = [block.text for block in build(case_run, Wanted()).blocks if isinstance(block, Heading)]
+    messages = [block.text for block in build(case_run, Wanted()).blocks if isinstance(block, Heading)]
     asked = build(case_run, Wanted(sections=long)).blocks
     heads = [block.text for block in asked if isinstance(block, Heading) and block.level == 1]
     assert heads == [SECTIONS[name].heading for name in long if name not in ("pairs", "limits")]  # it has no such
-    assert not {*heads} & {*told}
+    assert not {*heads} & {*messages}
     numbers = [
-        cell.found
+        cell.estimate
         for block in asked
         if isinstance(block, Table)
         for row in block.rows

@@ -44,9 +44,9 @@ def outputs(tmp_path_factory):
     Simulation(run).save_json(folder / "out.json")
     Simulation(run).save_report(folder / "out.docx")
     Simulation(run).keep(folder / "out.xlmcrun")
-    found = CliRunner().invoke(command, ["simulate", str(folder / "book.xlsx"), "-n20000", f"-o{folder / 'out.xlsx'}"])
-    assert found.exit_code == 0, found.output
-    return folder, " ".join(found.output.split())
+    result = CliRunner().invoke(command, ["simulate", str(folder / "book.xlsx"), "-n20000", f"-o{folder / 'out.xlsx'}"])
+    assert result.exit_code == 0, result.output
+    return folder, " ".join(result.output.split())
 
 
 @pytest.fixture(scope="module")
@@ -87,8 +87,8 @@ def test_every_output_says_the_same(outputs, stated):
 
 def test_the_record_and_the_json_keep_what_was_asked(outputs):
     document = json.loads((outputs[0] / "out.json").read_text(encoding="utf-8"))
-    found = [(each["report_to"], each["kind"], each["role"]) for each in document["forecasts"]]
-    assert found == [
+    result = [(each["report_to"], each["kind"], each["role"]) for each in document["forecasts"]]
+    assert result == [
         (1, "number", "answer"),
         (1, "number", "lower bound"),
         (None, "yes/no", "answer"),
@@ -108,26 +108,26 @@ def test_a_bound_is_typed_with_one_end_and_the_run_can_be_repeated(outputs):
     sheet = openpyxl.load_workbook(folder / "out.xlsx")["Certainty"]
     typed = [row for row in sheet.iter_rows(values_only=True) if row[0] == ROWS[2][0] and row[1] == "mph"]
     assert [row[2:4] for row in typed] == [(15, None)]
-    found = CliRunner().invoke(command, ["replay", str(folder / "out.xlsx")])
-    assert found.exit_code == 0, found.output
+    result = CliRunner().invoke(command, ["replay", str(folder / "out.xlsx")])
+    assert result.exit_code == 0, result.output
 
 
 def test_check_shows_how_answers_are_stated(outputs):
-    found = CliRunner().invoke(command, ["check", str(outputs[0] / "book.xlsx")])
-    assert found.exit_code == 0
-    assert all(word in found.output for word in ("Report to", "lower bound", "yes/no", "diagnostic"))
+    result = CliRunner().invoke(command, ["check", str(outputs[0] / "book.xlsx")])
+    assert result.exit_code == 0
+    assert all(word in result.output for word in ("Report to", "lower bound", "yes/no", "diagnostic"))
 
 
 def answer_rows(path):
     """The rows of the sheet Results that begin with a forecast's name, with the numbers' formats."""
     sheet = openpyxl.load_workbook(path)["Results"]
     names = {row[0] for row in ROWS[1:]}
-    found = {}
+    result = {}
     for row in sheet.iter_rows():
         filled = [each for each in row if each.value is not None]
         if filled and filled[0].value in names:
-            found.setdefault(filled[0].value, [(each.value, each.number_format) for each in filled])
-    return found
+            result.setdefault(filled[0].value, [(each.value, each.number_format) for each in filled])
+    return result
 
 
 def test_a_yes_or_no_is_a_share_in_percent_in_every_table_of_answers(outputs):

@@ -39,9 +39,9 @@ def files(tmp_path):
 
 
 def _written(files, *names, made=None, **more):
-    found = files(*names, **more)
-    found.check()
-    return [write() for _, write in found.writers(made or report())]
+    result = files(*names, **more)
+    result.check()
+    return [write() for _, write in result.writers(made or report())]
 
 
 def test_a_workbook_has_the_title_and_all_blocks(files):

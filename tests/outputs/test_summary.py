@@ -30,11 +30,11 @@ def test_rows_are_the_simulations_own_numbers(run):
     rows = summarise(run)
     assert [row.name for row in rows] == ["area", "difference"]
     area = rows[0]
-    found = run["area"].statistics
+    result = run["area"].statistics
     assert (area.mean, area.standard_deviation, (area.low, area.high)) == (
-        found.mean,
-        found.standard_deviation,
-        found.central,
+        result.mean,
+        result.standard_deviation,
+        result.central,
     )
     assert (area.units, area.trials, area.share, area.base, area.threshold) == ("ft", run.accepted, 0.51, 16.0, 16.0)
     assert area.above == run["area"].probability_above(16.0)
@@ -82,14 +82,14 @@ def test_evidence_is_the_table_of_that_name(model_of, filters, options):
 def test_the_text_prints_each_number_with_its_error(run):
     headings, lines = summary_text(summarise(run))
     assert headings == ["Forecast", "Units", "Mean", "SD", "51 % range", "Base case", "Threshold", "Above threshold"]
-    found = run["area"].statistics
-    low, high = (format_estimate(end.value, end.error) for end in found.central)
-    above = found.probability_above
+    result = run["area"].statistics
+    low, high = (format_estimate(end.value, end.error) for end in result.central)
+    above = result.probability_above
     assert lines[0] == [
         "area",
         "ft",
-        format_estimate(found.mean.value, found.mean.error),
-        format_estimate(found.standard_deviation.value, found.standard_deviation.error),
+        format_estimate(result.mean.value, result.mean.error),
+        format_estimate(result.standard_deviation.value, result.standard_deviation.error),
         f"{low} to {high}",
         "16",
         "16",
@@ -139,7 +139,7 @@ def test_shares_in_percent(share, text):
 
 
 @pytest.mark.parametrize(
-    ("found", "text"),
+    ("result", "text"),
     [
         (proportion(0, 5), "0 %, at most 46 %"),
         (proportion(5, 5), "100 %, at least 54 %"),
@@ -148,8 +148,8 @@ def test_shares_in_percent(share, text):
         (Estimate(0.0), ""),
     ],
 )
-def test_a_share_of_none_or_all_trials_says_how_far_off_it_may_be(found, text):
-    assert share_text(found) == text
+def test_a_share_of_none_or_all_trials_says_how_far_off_it_may_be(result, text):
+    assert share_text(result) == text
 
 
 def test_no_number_is_no_text():
@@ -173,9 +173,9 @@ def test_headings_of_a_report_have_the_words_of_its_field(name, headings):
 
 
 def test_the_base_case_is_computed_with_frozen_cells_held(run):
-    found = base_case(run)
-    assert found.forecasts == {"area": 2.0 * 3.0 + 10.0, "difference": -1.0}
-    assert found.rejected_by == ()
+    result = base_case(run)
+    assert result.forecasts == {"area": 2.0 * 3.0 + 10.0, "difference": -1.0}
+    assert result.rejected_by == ()
 
 
 @pytest.mark.parametrize(
@@ -216,18 +216,18 @@ def test_numbers_far_from_0_keep_the_digits_that_tell_them_apart(make):
         ],
     )
     headings, (time, constant) = summary_text(summarise(run))
-    found = dict(zip(headings, time, strict=True))
-    assert found["Threshold"] == "45,321.755"
-    assert found["Certainty of"] == "from 45,321.7512 to 45,321.7588"
-    assert found["Base case"] == "45,321.75"
-    low, high = (float(end.split(" ")[0].replace(",", "")) for end in found["Central range"].split(" to "))
+    result = dict(zip(headings, time, strict=True))
+    assert result["Threshold"] == "45,321.755"
+    assert result["Certainty of"] == "from 45,321.7512 to 45,321.7588"
+    assert result["Base case"] == "45,321.75"
+    low, high = (float(end.split(" ")[0].replace(",", "")) for end in result["Central range"].split(" to "))
     assert (low, high) == pytest.approx((45321.75, 45321.76), abs=2e-5)
-    assert found["Range"] == "99.99999 %"
+    assert result["Range"] == "99.99999 %"
     assert dict(zip(headings, constant, strict=True))["Mean"] == "1,234,567.8"
-    said = [each.text for each in statements(run)]
-    assert any("P(x > 45,321.755)" in each for each in said)
-    assert any("x from 45,321.7512 to 45,321.7588" in each for each in said)
-    assert any(each.startswith("c: 1,234,567.8 in all") for each in said)
+    message = [each.text for each in statements(run)]
+    assert any("P(x > 45,321.755)" in each for each in message)
+    assert any("x from 45,321.7512 to 45,321.7588" in each for each in message)
+    assert any(each.startswith("c: 1,234,567.8 in all") for each in message)
 
 
 @pytest.mark.parametrize(

@@ -101,7 +101,7 @@ def main(pipe, extension, entry, book, *options):
         dispatcher.executeDispatch(frame, f"service:xlmc.Menu?{entry}", "_self", 0, ())
     else:
         shown = messages_of(context, extension, entry, int("--ok" in options))
-    found = {
+    result = {
         "shown": shown,
         "selected": "" if document is None else document.getCurrentSelection().AbsoluteName,
         "modified": document is not None and document.isModified(),
@@ -111,7 +111,7 @@ def main(pipe, extension, entry, book, *options):
             if hasattr(each, "getSheets")
         },
     }
-    print(json.dumps(found))
+    print(json.dumps(result))
     for each in list(desktop.getComponents()):
         each.close(True)
 

@@ -82,8 +82,8 @@ def book(tmp_path):
 
 
 def test_simulate_opens_the_workbook_with_the_results(office, book):
-    found = office("simulate", book, "--installed")
-    assert found["opened"] == {"my case.xlsx": "Inputs", "my case-results.xlsx": "Results"}
+    result = office("simulate", book, "--installed")
+    assert result["opened"] == {"my case.xlsx": "Inputs", "my case-results.xlsx": "Results"}
     assert "Results" in openpyxl.load_workbook(book.with_name("my case-results.xlsx"), read_only=True).sheetnames
 
 
@@ -95,17 +95,17 @@ def test_check_selects_the_cell_of_the_problem(office, book):
     edited = openpyxl.load_workbook(book)
     edited["Inputs"]["F9"] = "Unifrom"
     edited.save(book)
-    found = office("check", book)
-    assert "Unifrom" in found["shown"][0]
-    assert found["selected"] == "$Inputs.$F$9"
+    result = office("check", book)
+    assert "Unifrom" in result["shown"][0]
+    assert result["selected"] == "$Inputs.$F$9"
 
 
 @pytest.mark.parametrize(("answer", "saved"), [("--ok", True), ("--cancel", False)])
 def test_a_changed_workbook_is_saved_if_the_user_wants(office, book, answer, saved):
-    found = office("check", book, "--modified", answer)
-    assert "Save my case.xlsx now?" in found["shown"][0]
-    assert found["modified"] is not saved
-    assert ("No problem found." in found["shown"][-1]) is saved
+    result = office("check", book, "--modified", answer)
+    assert "Save my case.xlsx now?" in result["shown"][0]
+    assert result["modified"] is not saved
+    assert ("No problem found." in result["shown"][-1]) is saved
 
 
 def test_without_a_workbook(office):
@@ -117,8 +117,8 @@ def test_without_the_program(office, book):
 
 
 def test_the_window_opens_in_the_browser(office, book):
-    found = office("open", book)
-    assert found["shown"] == []
+    result = office("open", book)
+    assert result["shown"] == []
     browsed, end = office.folder / "browsed", time.monotonic() + 60
     while not browsed.exists() and time.monotonic() < end:
         time.sleep(0.1)

@@ -61,9 +61,9 @@ class Browser:
             options.add_argument(argument)
         options.set_capability("goog:loggingPrefs", self._logged)
         service = webdriver.ChromeService(shutil.which("chromedriver"), popen_kw={"start_new_session": True})
-        found = webdriver.Chrome(options=options, service=service)
-        found.set_script_timeout(120)
-        return found
+        result = webdriver.Chrome(options=options, service=service)
+        result.set_script_timeout(120)
+        return result
 
     def quit(self):
         """End the browser and its driver, whatever is left of them."""

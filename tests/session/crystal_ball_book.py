@@ -208,12 +208,12 @@ def object_guid(item):
 
 def _wanted(item):
     """What an object takes from cells: enumeration, code, cell, GUID."""
-    found = [("ParmControlId", code, cell) for code, cell in getattr(item, "references", {}).items()]
+    result = [("ParmControlId", code, cell) for code, cell in getattr(item, "references", {}).items()]
     if getattr(item, "named_by", ""):
-        found.append(("AsmValueRefEnum" if isinstance(item, Drawn) else "FrcValueRefEnum", 0, item.named_by))
+        result.append(("AsmValueRefEnum" if isinstance(item, Drawn) else "FrcValueRefEnum", 0, item.named_by))
     if isinstance(item, Tied) and item.cell:
-        found.append(("CorrelationCoefRefEnum", 0, item.cell))
-    return [(*each, guid(f"{object_guid(item)} {each}")) for each in found]
+        result.append(("CorrelationCoefRefEnum", 0, item.cell))
+    return [(*each, guid(f"{object_guid(item)} {each}")) for each in result]
 
 
 def _references(item):
@@ -401,4 +401,4 @@ def add_shapes(parts, place, shapes):
     types = "[Content_Types].xml"
     if b'Extension="vml"' not in parts[types]:
         default = b'<Default Extension="vml" ContentType="application/vnd.openxmlformats-officedocument.vmlDrawing"/>'
-        parts[types] = re.sub(rb"(<Types[^>]*>)", lambda found: found[1] + default, parts[types], count=1)
+        parts[types] = re.sub(rb"(<Types[^>]*>)", lambda result: result[1] + default, parts[types], count=1)

@@ -281,10 +281,10 @@ def change(name, key, value, *, of="assumption", held=False, seq=1):
 
 def settle(session, clock=lambda: 0.0):
     """Do all that a session asks for; what it told meanwhile."""
-    told = []
+    messages = []
     while (job := session.job()) is not None:
-        told += session.finish(job, job.run(lambda: True, lambda share: None, clock))
-    return told
+        messages += session.finish(job, job.run(lambda: True, lambda share: None, clock))
+    return messages
 
 
 class Running:

@@ -21,11 +21,11 @@ def small_study(model):
         return study(model, reference_trials=1 << 18, trials=1 << 13, replicates=2, seed=5)
 
 
-def timed_study(found):
+def timed_study(result):
     """Return the study with the times of `SECONDS`: what to choose follows from them."""
 
     def clocked(curve):
         each = SECONDS[curve.method.key]
         return replace(curve, lengths=tuple(replace(runs, seconds=each * runs.budget) for runs in curve.lengths))
 
-    return replace(found, curves=tuple(map(clocked, found.curves)), engines=tuple(map(clocked, found.engines)))
+    return replace(result, curves=tuple(map(clocked, result.curves)), engines=tuple(map(clocked, result.engines)))

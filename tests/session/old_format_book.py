@@ -206,12 +206,12 @@ def compound(streams):
 
 def shapes_of(parts, titles):
     """The hidden pictures of an `.xlsx`, as `with_shapes` takes them; `titles` are its sheets in order."""
-    found = {}
+    result = {}
     for place, title in enumerate(titles, 1):
         relations = parts.get(f"xl/worksheets/_rels/sheet{place}.xml.rels", b"")
         target = re.search(rb'Target="[./]*(?:xl/)?(drawings/[^"]*\.vml)"', relations)
         if target:
             vml = parts[f"xl/{target[1].decode()}"].decode()
             held = re.findall(r'<v:shape [^>]*?id="([^"]*)".*?<x:ScriptText>(.*?)</x:ScriptText>', vml, re.DOTALL)
-            found[title] = [(name.replace("_x003a_", ":"), unescape(text)) for name, text in held]
-    return found
+            result[title] = [(name.replace("_x003a_", ":"), unescape(text)) for name, text in held]
+    return result

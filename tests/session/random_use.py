@@ -450,9 +450,9 @@ class Use:
         session = open_book.session
         kept = ("version", "_done", "_stopped_at", "_problem", "_dragged", "_current", "_stopped")
         same = session is not None and session.own.workbook.sha256 == read_workbook(self.book.path).sha256
-        found = {name: getattr(session, name, None) for name in kept}
+        result = {name: getattr(session, name, None) for name in kept}
         ended = [(task, task.done()) for task in open_book._tasks]
-        return {"same file": same, "stamp": open_book._stamp, "trouble": open_book._trouble, "ended": ended, **found}
+        return {"same file": same, "stamp": open_book._stamp, "trouble": open_book._trouble, "ended": ended, **result}
 
     def _quiet(self):
         open_book = self.server.server._open_books.get(self.server.library.only)
@@ -465,14 +465,14 @@ class Use:
 
     def _has_heard(self, client, wanted):
         session = self.open_book.session
-        found = {each["kind"]: each for each in client.heard}
-        if found.get("state", {}).get("version") != session.version:
+        result = {each["kind"]: each for each in client.heard}
+        if result.get("state", {}).get("version") != session.version:
             return False
         if session._stopped_at == session.version and not session._is_at_rest:
             return True
         if wanted == "trouble":
             return any(each["kind"] == "trouble" and each["text"] for each in client.heard)
-        return all(found.get(kind, {}).get("version") == session.version for kind in ("rest", "frame"))
+        return all(result.get(kind, {}).get("version") == session.version for kind in ("rest", "frame"))
 
     def check(self):
         """Compare what is shown with what the edited workbook gives."""
@@ -484,7 +484,7 @@ class Use:
             return
         own = load(self.book.path)
         assert [each.name for each in own.assumptions] == [each.name for each in session.own.assumptions]
-        found, expected = session.rest, own
+        result, expected = session.rest, own
         if session.adjustments:
             try:
                 edited = edited_state(own, session.adjustments, "")
@@ -492,18 +492,18 @@ class Use:
                 raise AssertionError((session.adjustments, self.done[-12:])) from error
             expected = build_model(read_workbook(edited.data, "book.xlsx"), self.book.path)
         expected = simulate(expected, evidence=None, trials=session.asked.trials, seed=session.asked.seed)
-        same = found.trial_index.tobytes() == expected.trial_index.tobytes()
+        same = result.trial_index.tobytes() == expected.trial_index.tobytes()
         assert same, (session.adjustments, session.asked, self.done[-12:])
         for name, values in expected.forecasts.items():
-            assert found.forecasts[name].tobytes() == values.tobytes(), (name, self.done[-12:])
+            assert result.forecasts[name].tobytes() == values.tobytes(), (name, self.done[-12:])
         if session.version != version:
             self.check()  # the workbook was read once more meanwhile, and pages are told of it a moment later
             return
         for client in self.clients:
             frame = client.heard_last("frame")
-            told = (frame["version"], frame["accepted"])
-            assert told == (session.version, expected.accepted), (
-                told,
+            messages = (frame["version"], frame["accepted"])
+            assert messages == (session.version, expected.accepted), (
+                messages,
                 session.version,
                 frame["stage"],
                 self.done[-12:],

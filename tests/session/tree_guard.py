@@ -52,9 +52,9 @@ def pytest_sessionstart(session: pytest.Session) -> None:
 
 @pytest.hookimpl(trylast=True)  # when the workers are done
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    found = session.config.stash.get(_FOUND, None)
-    if found is not None:
-        session.config.stash[_CHANGES] = message = changes(found, snapshot(session.config.rootpath))
+    result = session.config.stash.get(_FOUND, None)
+    if result is not None:
+        session.config.stash[_CHANGES] = message = changes(result, snapshot(session.config.rootpath))
         if message and session.exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):
             session.exitstatus = pytest.ExitCode.TESTS_FAILED
 

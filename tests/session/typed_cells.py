@@ -28,13 +28,13 @@ def model_of(workbook: Workbook) -> CompiledModel:
 
 def named_cells(workbook: Workbook) -> dict[str, Cell]:
     """Name -> its cell; names of tables of data are left out."""
-    found = {}
+    result = {}
     for each in workbook.names:
         if not each.name.startswith("_xlnm"):
             sheet, _, place = each.text.removeprefix("=").rpartition("!")
             if ":" not in place:
-                found[each.name] = parse_address(place, sheet.strip("'"))
-    return found
+                result[each.name] = parse_address(place, sheet.strip("'"))
+    return result
 
 
 def with_typed(workbook: Workbook, values: Mapping[str | Cell, CellValue]) -> Workbook:

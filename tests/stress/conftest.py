@@ -24,11 +24,11 @@ def sweep(forms_book):
     from stressing.sweeps import SWEEPS
     from stressing.workbook import FORMS_ENGINES
 
-    found = {}
+    result = {}
 
     def measure(name):
-        if name not in found:
-            found[name] = measured(forms_book, SWEEPS[name].points()[::-3][::-1], FORMS_ENGINES)
-        return found[name]
+        if name not in result:
+            result[name] = measured(forms_book, SWEEPS[name].points()[::-3][::-1], FORMS_ENGINES)
+        return result[name]
 
     return measure

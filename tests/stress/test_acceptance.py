@@ -14,10 +14,10 @@ def test_the_interval_covers_however_few_are_accepted(rate):
     """Exact, no simulation: 92.5 % at least and 97 % on average, from 0.05 accepted trials expected to 60."""
     from stressing.accepted import shares
 
-    found = shares(rate, np.geomspace(0.05, 60.0, 13))["coverage"]
-    assert min(found["xlmc"]) > 0.925
-    assert 0.95 < np.mean(found["xlmc"]) < 0.985
-    assert min(found["Wilson"]) < 0.86  # without what xlmc does about a few hits
+    result = shares(rate, np.geomspace(0.05, 60.0, 13))["coverage"]
+    assert min(result["xlmc"]) > 0.925
+    assert 0.95 < np.mean(result["xlmc"]) < 0.985
+    assert min(result["Wilson"]) < 0.86  # without what xlmc does about a few hits
 
 
 @pytest.mark.parametrize(("rate", "wanted"), [(1e-2, 100), (1e-2, 2), (1e-4, 10), (1e-6, 2)])
@@ -25,10 +25,10 @@ def test_a_share_that_was_waited_for_is_right_on_average(rate, wanted):
     """Exact but for 2e-9 of the probability, whose shares may be large, and for grouping trials: 0.1 % in all."""
     from stressing.accepted import waited_for
 
-    found = waited_for(rate, wanted, 4_000)
-    assert found["coverage"] == pytest.approx(0.95, abs=0.002)
-    assert abs(found["(N-1)/(n-1)"]) < 1e-3
-    assert found["N/n"] == pytest.approx(1 / (wanted - 1), rel=0.1)  # the share as it is usually given
+    result = waited_for(rate, wanted, 4_000)
+    assert result["coverage"] == pytest.approx(0.95, abs=0.002)
+    assert abs(result["(N-1)/(n-1)"]) < 1e-3
+    assert result["N/n"] == pytest.approx(1 / (wanted - 1), rel=0.1)  # the share as it is usually given
 
 
 @pytest.fixture(scope="module")

@@ -26,10 +26,10 @@ def test_pairs_near_one(asked, sampling):
     named = {("first", "second"): asked}
     model = book(named)
     run = simulated(model, TRIALS, 3, sampling=sampling)
-    (found,) = compared(model, named, run)
+    (result,) = compared(model, named, run)
     assert model.notices == ()
-    assert found["aimed"] == pytest.approx(asked, abs=1e-12)
-    assert abs(found["found"] - found["expected"]) < 5 * found["error"]
+    assert result["aimed"] == pytest.approx(asked, abs=1e-12)
+    assert abs(result["found"] - result["expected"]) < 5 * result["error"]
     draws = run.inputs
     for name, law in (("first", stats.uniform()), ("second", stats.norm(5.0, 2.0))):
         assert stats.kstest(draws[name], law.cdf, method="asymp").statistic < 2.5 / np.sqrt(TRIALS)
@@ -50,13 +50,13 @@ def test_possible_matrices_are_left_alone_and_impossible_ones_are_told():
     reported = {}
     for name, named in MATRICES.items():
         model = book(named)
-        found = measure(model, named, TRIALS, 5)
+        result = measure(model, named, TRIALS, 5)
         reported[name] = bool(model.notices)
-        for pair in found:
+        for pair in result:
             assert abs(pair["found"] - pair["expected"]) < 5 * pair["error"], (name, pair)
             assert reported[name] or pair["aimed"] == pytest.approx(pair["asked"], abs=1e-9), (name, pair)
         pearson = np.eye(3)
-        for (i, j), pair in zip([(0, 1), (0, 2), (1, 2)], found, strict=True):
+        for (i, j), pair in zip([(0, 1), (0, 2), (1, 2)], result, strict=True):
             pearson[i, j] = pearson[j, i] = 2 * np.sin(np.pi * pair["aimed"] / 6)
         assert np.linalg.eigvalsh(pearson)[0] > -1e-9
     assert [name for name, message in reported.items() if message] == ["just impossible", "contradictory"]

@@ -13,10 +13,10 @@ from xlmc.montecarlo.statistics import mode
 FAMILIES = ["Yes-No", "Poisson", "Geometric", "Binomial"]
 
 
-def held(found):
+def held(result):
     """Ties make intervals longer, never shorter: 95 % less 4 standard errors, and 2 % for interpolated ranks."""
-    runs = found["runs"]
-    return min(found["held"]) / runs > 0.95 - 4 * math.sqrt(0.95 * 0.05 / runs) - 0.02
+    runs = result["runs"]
+    return min(result["held"]) / runs > 0.95 - 4 * math.sqrt(0.95 * 0.05 / runs) - 0.02
 
 
 @pytest.mark.parametrize("name", FAMILIES)
@@ -32,9 +32,9 @@ def test_the_mode_is_the_most_probable_value_and_percentiles_are_covered(name):
     3.0, so that it wins in 0.4 and 0.1 % of runs, and 3 times in 40 in less than 1 in 1,000 of such tests."""
     from stressing.discrete import measure
 
-    found = measure(name, 4_000, 40)
-    assert found["modes"] >= (38 if name in ("Poisson", "Binomial") else 40)
-    assert held(found)
+    result = measure(name, 4_000, 40)
+    assert result["modes"] >= (38 if name in ("Poisson", "Binomial") else 40)
+    assert held(result)
 
 
 def test_the_most_frequent_value_by_hand():

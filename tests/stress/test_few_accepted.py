@@ -41,19 +41,19 @@ With 5 trials the median lies outside them all in 1 of 16 runs, so 95 % confiden
 
 @pytest.mark.parametrize("n", [0, 1, 2, 3, 4, 5, 6, 10, 16])
 def test_what_is_defined(n):
-    found = xs.describe(np.random.default_rng(n).normal(5.0, 1.0, n), threshold=5.0)
-    assert found.trials == n
+    result = xs.describe(np.random.default_rng(n).normal(5.0, 1.0, n), threshold=5.0)
+    assert result.trials == n
     for name, (number, error, interval) in DEFINED_FROM.items():
-        estimate = getattr(found, name)
+        estimate = getattr(result, name)
         assert math.isnan(estimate.value) == (n < number), name
         assert (estimate.error is not None) == (error is not None and n >= error), name
         assert (estimate.interval is not None) == (interval is not None and n >= interval), name
         assert estimate.n == n
-    assert math.isnan(found.probability_above.value) == (n == 0)
+    assert math.isnan(result.probability_above.value) == (n == 0)
     if n:
-        low, high = found.probability_above.interval
-        assert 0 <= low <= found.probability_above.value <= high <= 1
-        assert found.minimum.value <= found.median.value <= found.maximum.value
+        low, high = result.probability_above.interval
+        assert 0 <= low <= result.probability_above.value <= high <= 1
+        assert result.minimum.value <= result.median.value <= result.maximum.value
 
 
 LEAST = {
@@ -72,10 +72,10 @@ LEAST = {
 def test_intervals_are_as_honest_as_the_docs_say(n, place):
     from stressing.few import FORECASTS, coverage
 
-    found = coverage(list(FORECASTS)[place], n, RUNS)["found"]
+    result = coverage(list(FORECASTS)[place], n, RUNS)["found"]
     for statistic, expected in LEAST.items():
         if n in expected:
-            given, held = found[statistic]
+            given, held = result[statistic]
             assert given > 0.5 * RUNS
             assert held / given > expected[n][place] - NOISE, statistic
 

@@ -16,10 +16,10 @@ def test_intervals_hold_the_truth_from_ten_accepted_trials_a_replicate(method):
     skewed as an exponential, may have 4 % less: docs/stress.md."""
     from stressing.accepted import STATISTICS, after_filters
 
-    found = after_filters(method, 0.01, 19_200, RUNS, first=20_000)
-    assert found["accepted"] == pytest.approx(0.01 * found["trials"], rel=0.02)
-    assert found["given"] == [RUNS] * len(STATISTICS)
-    for name, hits in zip(STATISTICS, found["hits"], strict=True):
+    result = after_filters(method, 0.01, 19_200, RUNS, first=20_000)
+    assert result["accepted"] == pytest.approx(0.01 * result["trials"], rel=0.02)
+    assert result["given"] == [RUNS] * len(STATISTICS)
+    for name, hits in zip(STATISTICS, result["hits"], strict=True):
         least = 0.95 - 4 * math.sqrt(0.95 * 0.05 / RUNS) - 0.04 * (name == "SD")
         assert hits / RUNS > least, name
 

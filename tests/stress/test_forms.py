@@ -55,27 +55,27 @@ def test_the_rewritten_forms_lose_a_few_roundings_at_most(sweep, name):
     from stressing.forms import FORMS
     from stressing.rounding import BOUND
 
-    found = sweep(name)
+    result = sweep(name)
     for engine in ENGINES:
         for each in FORMS:
-            assert found.excess(engine, each.rewritten, each.rewritten).max() < BOUND, (engine, each.number)
+            assert result.excess(engine, each.rewritten, each.rewritten).max() < BOUND, (engine, each.number)
 
 
 @pytest.mark.parametrize(("number", "name", "least"), FAILS)
 def test_the_printed_forms_fail_where_theory_says(sweep, number, name, least):
-    found, each = sweep(name), form(number)
+    result, each = sweep(name), form(number)
     for engine in ENGINES:
-        assert found.excess(engine, each.printed, each.rewritten).max() > least
+        assert result.excess(engine, each.printed, each.rewritten).max() > least
 
 
 @pytest.mark.parametrize("name", ["through 90", "through 270"])
 def test_at_90_degrees_the_printed_speed_is_wrong_and_no_error_says_so(sweep, name):
-    found, each = sweep(name), form(16)
-    assert found.x[-1] == 0.0
+    result, each = sweep(name), form(16)
+    assert result.x[-1] == 0.0
     for engine in ENGINES:
-        wrong = found.errors[engine][each.printed][-1]
+        wrong = result.errors[engine][each.printed][-1]
         assert 0.01 < wrong < math.inf
-        assert found.errors[engine][each.rewritten][-1] < 1e-15
+        assert result.errors[engine][each.rewritten][-1] < 1e-15
 
 
 @pytest.mark.parametrize("name", ["through 90", "through 270"])
@@ -86,29 +86,29 @@ def test_from_the_other_side_of_90_degrees_it_is_the_same(forms_book, name):
 
     places = [-1.0, -1e-3, -1e-6, -1e-9, -1e-12]
     points = [Point(x, in_order(SWEEPS[name].crash(x))) for x in places]
-    found = measured(forms_book, points, ENGINES)
+    result = measured(forms_book, points, ENGINES)
     for engine in ENGINES:
         for each in FORMS:
-            assert found.excess(engine, each.rewritten, each.rewritten).max() < BOUND, each.number
-        wrong = found.excess(engine, form(16).printed, form(16).rewritten)
+            assert result.excess(engine, each.rewritten, each.rewritten).max() < BOUND, each.number
+        wrong = result.excess(engine, form(16).printed, form(16).rewritten)
         assert wrong[-1] > 1e11
         assert wrong[-1] > wrong[1] > wrong[0]
 
 
 def test_the_printed_direction_is_half_a_turn_off_where_the_arctangent_loses_the_quadrant(sweep):
-    found, each = sweep("catching up"), form(23)
+    result, each = sweep("catching up"), form(23)
     for engine in ENGINES:
-        off = np.abs(found.errors[engine][each.printed] - 1.0) < 1e-6
+        off = np.abs(result.errors[engine][each.printed] - 1.0) < 1e-6
         assert off.any()
-        assert found.errors[engine][each.rewritten].max() < 1e-15
+        assert result.errors[engine][each.rewritten].max() < 1e-15
 
 
 @pytest.mark.parametrize("name", ["sideswipe", "pole"])
 def test_what_the_evidence_does_not_hold_no_form_gives_back(sweep, name):
     """Here κ grows as 1/δ: the rewritten forms lose digits too, as many as the evidence itself."""
-    found, each = sweep(name), form(15 if name == "sideswipe" else 10)
-    error = found.errors["numpy"][each.rewritten]
-    assert found.conditions[each.rewritten][-1] > 1e8
+    result, each = sweep(name), form(15 if name == "sideswipe" else 10)
+    error = result.errors["numpy"][each.rewritten]
+    assert result.conditions[each.rewritten][-1] > 1e8
     assert error[-1] > 1e-10
     assert error[-1] < 1e-5
 
@@ -122,12 +122,12 @@ def test_crashes_of_all_kinds(forms_book):
     points = random_crashes(25, 7)
     square = np.array([abs(math.cos(math.radians(point.evidence["alpha_2"]))) > 0.1 for point in points])
     assert square.sum() > 15
-    found = measured(forms_book, points, ENGINES)
+    result = measured(forms_book, points, ENGINES)
     for engine in ENGINES:
         for each in FORMS:
-            assert found.excess(engine, each.rewritten, each.rewritten).max() < BOUND, each.number
+            assert result.excess(engine, each.rewritten, each.rewritten).max() < BOUND, each.number
             if not each.angle:
-                assert found.errors[engine][each.printed][square].max() < 1e4 * UNIT, each.number
+                assert result.errors[engine][each.printed][square].max() < 1e4 * UNIT, each.number
 
 
 def test_both_engines_agree_to_the_bound(forms_book):

@@ -55,9 +55,9 @@ def test_a_part_at_a_small_size(stress, tmp_path, monkeypatch):
     """The few trials: what is measured, through JSON, to a picture."""
     leave_out_layout(monkeypatch)
     part = stress.PARTS["few"]
-    found = json.loads(json.dumps(part.measure(500)))
-    assert {cell["runs"] for cell in found["cells"]} == {1500 // 500}
-    (path,) = part.draw(found, tmp_path)
+    result = json.loads(json.dumps(part.measure(500)))
+    assert {cell["runs"] for cell in result["cells"]} == {1500 // 500}
+    (path,) = part.draw(result, tmp_path)
     assert path.read_bytes().startswith(PNG)
 
 
@@ -75,15 +75,15 @@ def test_the_forms_of_the_page_keep_the_bound(stress):
 def test_runs_that_ended_by_themselves_hold_the_truth(stress):
     """Full size: within 4 binomial standard errors of 95 %, and what skewed means lack besides; biased by less than
     0.15 of their error, or 0.3 where the forecast is very skewed. Adaptive: 94 % or more, but for chance."""
-    found = results(stress, "stops")
+    result = results(stress, "stops")
     slack = {"normal": 0.0, "exponential": 0.01, "lognormal, σ 1": 0.035}
-    for row in found["precise"]:
+    for row in result["precise"]:
         assert row["ended"] == row["runs"] >= 600
         noise = 4 * math.sqrt(0.95 * 0.05 / row["runs"])
         if row["forecast"] in slack:
             assert row["held"] / row["ended"] > 0.95 - noise - slack[row["forecast"]], row
         assert abs(row["bias"]) < 0.3 + 4 * row["error of bias"]
-    for row in found["stable"]:
+    for row in result["stable"]:
         if row["least"] > 2:
             worst = min(row["within"]) / row["ended"]
             assert worst > 0.94 - 4 * math.sqrt(0.94 * 0.06 / row["ended"]), row

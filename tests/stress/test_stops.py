@@ -21,21 +21,21 @@ def test_precision(name, needed, slack):
 
     forecast = FORECASTS[name]
     tolerance = 1.96 * forecast.deviation / forecast.mean / math.sqrt(needed)
-    found = precise_runs(name, tolerance, RUNS)
-    assert found["ended"] == RUNS
-    assert found["held"] / RUNS > 0.95 - NOISE - slack
-    assert found["unvaried"] == 0
-    assert abs(found["bias"]) < 0.02 + slack * 4 + 4 * found["error of bias"]
-    assert 0.8 * needed < found["length"] < 1.6 * needed
+    result = precise_runs(name, tolerance, RUNS)
+    assert result["ended"] == RUNS
+    assert result["held"] / RUNS > 0.95 - NOISE - slack
+    assert result["unvaried"] == 0
+    assert abs(result["bias"]) < 0.02 + slack * 4 + 4 * result["error of bias"]
+    assert 0.8 * needed < result["length"] < 1.6 * needed
 
 
 def test_precision_does_not_take_for_known_what_has_not_varied_yet():
     """1 in 1,000 trials is 1, the others 0. At 2,000, the first look, 13.5 % of the runs have only seen zeros."""
     from stressing.stops import precise_runs
 
-    found = precise_runs("1 in 1,000", 0.6, 60)
-    assert found["ended"] == 60
-    assert found["unvaried"] == 0
+    result = precise_runs("1 in 1,000", 0.6, 60)
+    assert result["ended"] == 60
+    assert result["unvaried"] == 0
 
 
 @pytest.fixture
@@ -52,22 +52,22 @@ def test_adaptive(short_sequences, scale):
     from stressing.stops import least_sequences, stable_runs
 
     runs = 60
-    found = stable_runs("normal", 2, scale, runs)
-    assert found["ended"] == runs
-    assert min(found["within"]) / runs > 0.95 - 4 * math.sqrt(0.95 * 0.05 / runs)
+    result = stable_runs("normal", 2, scale, runs)
+    assert result["ended"] == runs
+    assert min(result["within"]) / runs > 0.95 - 4 * math.sqrt(0.95 * 0.05 / runs)
     with least_sequences(2):
         standard = stable_runs("normal", 2, scale, runs)
-    assert standard["sequences"] < found["sequences"]
-    assert min(standard["within"]) < min(found["within"]) - 0.02 * runs  # it stops by luck
+    assert standard["sequences"] < result["sequences"]
+    assert min(standard["within"]) < min(result["within"]) - 0.02 * runs  # it stops by luck
 
 
 def test_adaptive_sees_what_is_rare(short_sequences):
     """Twenty sequences hold 10,000 trials: 1 in 1,000 is missed in 1 of 22,000 runs."""
     from stressing.stops import stable_runs
 
-    found = stable_runs("1 in 1,000", 1, 1.0, 20)
-    assert found["ended"] == 20
-    assert found["sequences"] >= 20
+    result = stable_runs("1 in 1,000", 1, 1.0, 20)
+    assert result["ended"] == 20
+    assert result["sequences"] >= 20
 
 
 @pytest.fixture(scope="module")

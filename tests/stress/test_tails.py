@@ -46,8 +46,8 @@ def test_its_percentiles_do(runs):
     held = sum(low <= 1.0 <= high for run in runs for low, high in [run["ratio"]["quartile interval"]])
     assert held / SEEDS > 0.95 - 4 * math.sqrt(0.95 * 0.05 / SEEDS)
     density = stats.cauchy.pdf(1.0)
-    found = np.array([run["ratio"]["quartile"] for run in runs])
-    assert found.std(ddof=1) == pytest.approx(math.sqrt(0.1875 / TRIALS) / density, rel=4 / math.sqrt(2 * SEEDS))
+    result = np.array([run["ratio"]["quartile"] for run in runs])
+    assert result.std(ddof=1) == pytest.approx(math.sqrt(0.1875 / TRIALS) / density, rel=4 / math.sqrt(2 * SEEDS))
 
 
 def test_the_notice_stands_in_notices_and_is_no_warning(model):

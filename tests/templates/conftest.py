@@ -132,12 +132,12 @@ def recalculated(book_path, tmp_path_factory):
 
 def _values(text):
     """(row, column) -> what a file of LibreOffice says, a text where it is in quotes."""
-    found, row, column = {}, 1, 1
+    result, row, column = {}, 1, 1
     for quoted, plain, end in _FIELD.findall(text):
         if quoted or plain:
-            found[row, column] = quoted.replace('""', '"') or _value(plain)
+            result[row, column] = quoted.replace('""', '"') or _value(plain)
         row, column = (row + 1, 1) if end == "\n" else (row, column + 1)
-    return found
+    return result
 
 
 def _value(plain):

@@ -80,12 +80,12 @@ def test_cached_values_are_what_libreoffice_computes(name, read, recalculated):
 
     But for a 0 of LibreOffice that is none in Excel: it makes 0 of every sum that cancels, in brackets, too.
     """
-    found = 0
+    result = 0
     for sheet in read(name).sheets.values():
         computed = recalculated(name, sheet.name)
         for at, content in sheet.cells.items():
             if content.formula is not None:
-                found += 1
+                result += 1
                 shown, truth = content.value, computed.get(at, "")
                 if isinstance(shown, int | float) and not isinstance(shown, bool):
                     assert isinstance(truth, float), (sheet.name, at, truth)
@@ -93,7 +93,7 @@ def test_cached_values_are_what_libreoffice_computes(name, read, recalculated):
                 else:
                     assert shown == truth, (sheet.name, at)
                     assert type(shown) is type(truth), (sheet.name, at)
-    assert found > 15
+    assert result > 15
 
 
 @pytest.mark.parametrize("name", RECALCULATED)
@@ -243,10 +243,10 @@ def test_the_empty_template_shows_a_possible_case(name, described, shown):
 @pytest.mark.parametrize("name", BOOKS)
 def test_cached_values_are_what_xlmc_computes(name, read):
     """To 1e-12, since the last digit of a sine depends on the processor."""
-    found = computed(read(name))
+    result = computed(read(name))
     cached = cached_values(read(name))
-    assert found.keys() == cached.keys()
-    for place, value in found.items():
+    assert result.keys() == cached.keys()
+    for place, value in result.items():
         if isinstance(value, int | float) and not isinstance(value, bool):
             assert value == pytest.approx(cached[place], rel=1e-12, abs=ROUND_OFF), place
         else:

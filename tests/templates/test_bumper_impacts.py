@@ -49,11 +49,11 @@ def stepped(m, speeds, e, deepest, drags, *, constant=False, steps=200_000):
 @pytest.mark.parametrize("e", [0.2, 0.4, 0.7])
 def test_without_brakes_speeds_and_duration_are_those_of_two_masses_and_a_spring(cells, e, constant):
     given = FREE | {"w_1": 3500, "w_2": 2800, "e": e, "V1_before": 8, "X": 4, "kappa": 2 if constant else np.pi / 2}
-    found = {name: value.item() for name, value in cells("low-speed", given, WANTED).items()}
+    result = {name: value.item() for name, value in cells("low-speed", given, WANTED).items()}
     (v1, v2), t = stepped((3500 / G, 2800 / G), (8 / MPH, 0), e, 4 / 12, (0, 0), constant=constant)
-    assert found["t_contact"] == pytest.approx(t, rel=1e-3)
-    assert [found["dV1_mph"], found["dV2_mph"]] == pytest.approx([8 - v1 * MPH, v2 * MPH], rel=1e-3)
-    assert found["a_mean_2"] == pytest.approx(v2 / t / G, rel=2e-3)
+    assert result["t_contact"] == pytest.approx(t, rel=1e-3)
+    assert [result["dV1_mph"], result["dV2_mph"]] == pytest.approx([8 - v1 * MPH, v2 * MPH], rel=1e-3)
+    assert result["a_mean_2"] == pytest.approx(v2 / t / G, rel=2e-3)
 
 
 @pytest.mark.parametrize("drags", [(0, 0.7), (0.7, 0), (0.6, 0.6)])
@@ -62,16 +62,16 @@ def test_brakes_shift_delta_v_as_in_time(cells, drags, constant):
     """The duration is taken as if nobody braked, which leaves a few per cent of the shift."""
     given = FREE | {"w_1": 3500, "w_2": 2800, "e": 0.3, "V1_before": 10, "X": 4, "f_1": drags[0], "f_2": drags[1]}
     given |= {"kappa": 2 if constant else np.pi / 2}
-    found = {name: value.item() for name, value in cells("low-speed", given, WANTED).items()}
+    result = {name: value.item() for name, value in cells("low-speed", given, WANTED).items()}
     (_, v2), _ = stepped((3500 / G, 2800 / G), (10 / MPH, 0), 0.3, 4 / 12, drags, constant=constant)
     free = cells("low-speed", given | {"f_1": 0, "f_2": 0}, ["dV2_mph"])["dV2_mph"].item()
-    assert free - found["dV2_mph"] == pytest.approx(free - v2 * MPH, rel=0.15)
+    assert free - result["dV2_mph"] == pytest.approx(free - v2 * MPH, rel=0.15)
 
 
 def test_like_cars_on_springs_have_the_mean_acceleration_of_the_guide(cells):
     given = FREE | {"w_1": 3000, "w_2": 3000, "e": np.array([0.2, 0.4, 0.75]), "V1_before": 8, "X": 4}
-    found = cells("low-speed", given | {"kappa": np.pi / 2}, ["a_mean_2"])["a_mean_2"]
-    np.testing.assert_allclose(found, (8 / MPH) ** 2 / (np.pi * 4 / 12) / G, rtol=1e-12)
+    result = cells("low-speed", given | {"kappa": np.pi / 2}, ["a_mean_2"])["a_mean_2"]
+    np.testing.assert_allclose(result, (8 / MPH) ** 2 / (np.pi * 4 / 12) / G, rtol=1e-12)
 
 
 def test_delta_v_and_run_out_go_back_to_the_speed(cells):
@@ -87,27 +87,27 @@ def test_delta_v_and_run_out_go_back_to_the_speed(cells):
         back = given | typed | {"V1_before": 0}
         by_delta_v = cells("low-speed", back | {"known": 2, "dV2_given": there["dV2_mph"]}, ["V1_mph", "dV1_mph"])
         by_run_out = cells("low-speed", back | {"known": 3, "d_after": there["V2_f"] ** 2 / 0.8 / G}, ["V1_mph"])
-        for found in (by_delta_v, by_run_out):
-            np.testing.assert_allclose(found["V1_mph"][moved], given["V1_before"][moved], rtol=1e-9)
+        for result in (by_delta_v, by_run_out):
+            np.testing.assert_allclose(result["V1_mph"][moved], given["V1_before"][moved], rtol=1e-9)
         np.testing.assert_allclose(by_delta_v["dV1_mph"][moved], there["dV1_mph"][moved], rtol=1e-9)
 
 
 def test_brakes_hold_a_standing_vehicle_and_never_push_it_back(cells):
     given = FREE | {"w_1": 2000, "w_2": 40_000, "e": 0.2, "V1_before": 1, "X": 6, "f_2": 0.8}
-    found = {name: value.item() for name, value in cells("low-speed", given, ["dV2_mph", "dV1_mph"]).items()}
-    assert found["dV2_mph"] == 0
-    assert found["dV1_mph"] == pytest.approx(1.2)
+    result = {name: value.item() for name, value in cells("low-speed", given, ["dV2_mph", "dV1_mph"]).items()}
+    assert result["dV2_mph"] == 0
+    assert result["dV1_mph"] == pytest.approx(1.2)
 
 
 def test_undamaged_bumpers_bound_the_closing_speed(cells):
     """Like cars whose bumpers each take 2.5 mph at a barrier meet their limits at 5 mph; beyond a barrier, at 2.5."""
     given = FREE | {"w_1": 3000, "w_2": np.array([3000, 3e9]), "v_bumper_1": 2.5, "v_bumper_2": np.array([2.5, 0])}
-    found = cells("low-speed", given, ["V_limit_mph"])["V_limit_mph"]
-    np.testing.assert_allclose(found, [5, 2.5], rtol=1e-5)
+    result = cells("low-speed", given, ["V_limit_mph"])["V_limit_mph"]
+    np.testing.assert_allclose(result, [5, 2.5], rtol=1e-5)
 
 
 def test_both_recorded_delta_v_give_the_restitution_of_a_published_test(cells):
     """A Polo into a Fiesta at 5.5 mph, delta-V 3.5 and 3.1 mph: (3.5 + 3.1)/5.5 − 1 = 0.2."""
     given = FREE | {"w_1": 3100, "w_2": 3500, "e": 0.2, "V1_before": 5.5}
-    found = {name: value.item() for name, value in cells("low-speed", given, ["dV1_mph", "dV2_mph"]).items()}
-    assert [found["dV1_mph"], found["dV2_mph"]] == pytest.approx([3.5, 3.1], abs=0.05)
+    result = {name: value.item() for name, value in cells("low-speed", given, ["dV1_mph", "dV2_mph"]).items()}
+    assert [result["dV1_mph"], result["dV2_mph"]] == pytest.approx([3.5, 3.1], abs=0.05)

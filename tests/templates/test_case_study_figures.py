@@ -18,13 +18,13 @@ KEPT = 703_090
 def drawn(cells, described):
     """Quantity -> its values in all draws; and `ok`, whether the filters of the paper keep the draw."""
     ranges = {each.symbol: each.parameters for each in described["intersection"].assumptions}
-    found = {}
+    result = {}
     for block in range(BLOCKS):
         rng = np.random.default_rng(2001 + block)
         draws = {symbol: rng.uniform(ends["Low"], ends["High"], DRAWS) for symbol, ends in ranges.items()}
         for symbol, values in (draws | cells("intersection", draws, WANTED)).items():
-            found.setdefault(symbol, []).append(values)
-    v = {symbol: np.concatenate(parts) for symbol, parts in found.items()}
+            result.setdefault(symbol, []).append(values)
+    v = {symbol: np.concatenate(parts) for symbol, parts in result.items()}
     v["e_n ok"] = (v["e_n"] >= 0) & (v["e_n"] < 1)
     v["e_t ok"] = (v["e_t"] >= 0) & (v["e_t"] <= 0.25)
     v["V2 ok"] = v["V2_mph"] > 0
@@ -106,8 +106,8 @@ def test_filters_condition_the_inputs(drawn, accepted, symbol, mean, digits, nar
 @pytest.mark.parametrize(("first", "second", "correlation"), [("alpha_1", "beta_1", 0.69), ("dV2_mph", "V1_mph", 0.72)])
 def test_filters_tie_quantities_together(accepted, first, second, correlation):
     error = (1 - correlation**2) / np.sqrt(accepted[first].size)
-    found = np.corrcoef(accepted[first], accepted[second])[0, 1]
-    assert found == pytest.approx(correlation, abs=4 * error + 0.005)
+    result = np.corrcoef(accepted[first], accepted[second])[0, 1]
+    assert result == pytest.approx(correlation, abs=4 * error + 0.005)
 
 
 def ranks(values):
@@ -120,8 +120,8 @@ def ranks(values):
 def test_what_drives_the_slower_speed_depends_on_the_filters(drawn, accepted, symbol, kept, all_trials):
     for v, expected in ((accepted, kept), (drawn, all_trials)):
         if expected is not None:
-            found = np.corrcoef(ranks(v[symbol]), ranks(v["V2_mph"]))[0, 1]
-            assert found == pytest.approx(expected, abs=4 / np.sqrt(v[symbol].size) + 0.005)
+            result = np.corrcoef(ranks(v[symbol]), ranks(v["V2_mph"]))[0, 1]
+            assert result == pytest.approx(expected, abs=4 / np.sqrt(v[symbol].size) + 0.005)
 
 
 @pytest.mark.parametrize(
@@ -165,8 +165,8 @@ def test_a_normal_error_weighs_the_trials(accepted):
     assert weights.mean() == pytest.approx(0.6158, abs=4 * error)
     assert weights.sum() ** 2 / np.sum(weights**2) / weights.size == pytest.approx(0.783, abs=0.02)
     for symbol, mean in (("dV1_mph", 11.96), ("V1_mph", 33.50), ("V2_mph", 4.78)):
-        found = np.average(accepted[symbol], weights=weights)
-        assert found == pytest.approx(mean, abs=4 * accepted[symbol].std() / np.sqrt(0.78 * weights.size) + 0.005)
+        result = np.average(accepted[symbol], weights=weights)
+        assert result == pytest.approx(mean, abs=4 * accepted[symbol].std() / np.sqrt(0.78 * weights.size) + 0.005)
 
 
 def test_the_acceptance_depends_on_gravity(drawn, cells, described):

@@ -41,8 +41,8 @@ def with_reading(case, reading, percent):
 def agree(run, means, behind):
     """Whether means are as expected, within 4 standard errors of both and half a digit."""
     for name, (mean, digits) in means.items():
-        found = run[name].mean
-        assert found.value == pytest.approx(mean, abs=4 * found.error * math.sqrt(1 + behind) + 0.5 * 10.0**-digits)
+        result = run[name].mean
+        assert result.value == pytest.approx(mean, abs=4 * result.error * math.sqrt(1 + behind) + 0.5 * 10.0**-digits)
 
 
 @pytest.mark.parametrize("way", ["rejection", "weights"])
@@ -86,7 +86,7 @@ def test_total_indices_without_filters(case):
     wanted = {name: [order.index(answer) for answer in truths] for name in model.draws}
     indices = pick_and_freeze(model, wanted, 400_000, 5).indices
     for answer, drivers in truths.items():
-        totals = {name: found[order.index(answer)][1] for name, found in indices.items()}
+        totals = {name: result[order.index(answer)][1] for name, result in indices.items()}
         for name, truth in drivers:
             assert totals[name].value == pytest.approx(truth, abs=4 * totals[name].error + 0.005), (answer, name)
         others = set(totals) - {name for name, _ in drivers}
@@ -177,8 +177,8 @@ def test_a_mean_and_a_standard_deviation_lose_what_the_trials_have_in_common(rea
     typed |= {speed._replace(column=deviation): 1.76307}
     typed |= {cell._replace(column=frozen): False for cell in (friction, speed)}
     run = simulated(model_of(with_typed(book, typed)), 400_000)
-    found = run["Speed at the beginning of the skid"]
+    result = run["Speed at the beginning of the skid"]
     above = np.mean(run.forecasts["Speed at the beginning of the skid"] > 48)
-    assert found.mean.value == pytest.approx(49.89, abs=4 * found.mean.error + 0.005)
-    assert found.standard_deviation.value == pytest.approx(2.16, abs=4 * found.standard_deviation.error + 0.005)
+    assert result.mean.value == pytest.approx(49.89, abs=4 * result.mean.error + 0.005)
+    assert result.standard_deviation.value == pytest.approx(2.16, abs=4 * result.standard_deviation.error + 0.005)
     assert above == pytest.approx(0.79, abs=4 * math.sqrt(0.79 * 0.21 / run.accepted) + 0.005)

@@ -135,9 +135,9 @@ CASES = [
 @pytest.mark.parametrize(("template", "failing", "changes"), CASES)
 def test_a_contradiction_turns_its_check_red(template, failing, changes, cells, described):
     names = [row.symbol for row in described[template].equations if row.role.value == "check"]
-    found = {symbol: value.item() for symbol, value in cells(template, changes, names).items()}
-    assert found.pop("checks_hold") == 0
-    assert [symbol for symbol, holds in found.items() if not holds] == failing.split()
+    result = {symbol: value.item() for symbol, value in cells(template, changes, names).items()}
+    assert result.pop("checks_hold") == 0
+    assert [symbol for symbol, holds in result.items() if not holds] == failing.split()
 
 
 def test_every_check_of_every_template_is_tried(described):

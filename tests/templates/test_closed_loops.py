@@ -25,10 +25,10 @@ CRASH_TEST |= {"L_1": 60, "L_test_1": 60, "L_2": 0, "w_2": 1e16}
 @pytest.mark.parametrize("e", ENDS)
 def test_crush_energy_returns_the_barrier_test_of_its_stiffness(cells, e):
     wanted = ["closing_mph", "dV1_mph", "EBS1_mph", "EES1_mph", "E_absorbed", "E_crush"]
-    found = {symbol: value.item() for symbol, value in cells("crush-energy", CRASH_TEST | {"e": e}, wanted).items()}
+    result = {symbol: value.item() for symbol, value in cells("crush-energy", CRASH_TEST | {"e": e}, wanted).items()}
     brought = 0.5 * 3000 / 32.174 * (30 / MPH) ** 2
     expected = [30, 30 * (1 + e), 30, 30 * (1 - e**2) ** 0.5, brought, brought * (1 - e**2)]
-    assert list(found.values()) == pytest.approx(expected, rel=1e-9)
+    assert list(result.values()) == pytest.approx(expected, rel=1e-9)
 
 
 @pytest.mark.parametrize("e", ENDS)
@@ -36,8 +36,8 @@ def test_stiffness_made_of_energy_lost_returns_its_test_too(cells, e):
     """Of the same test, with b1 fitted so that its energy is what the test lost."""
     lost = (1 - e**2) ** 0.5
     given = CRASH_TEST | {"basis": 2, "b0_1": 5 * lost, "b1_1": 25 / 16 * lost, "e": e}
-    found = cells("crush-energy", given, ["closing_mph", "dV1_mph", "EES1_mph"])
-    assert [value.item() for value in found.values()] == pytest.approx([30, 30 * (1 + e), 30 * lost], rel=1e-9)
+    result = cells("crush-energy", given, ["closing_mph", "dV1_mph", "EES1_mph"])
+    assert [value.item() for value in result.values()] == pytest.approx([30, 30 * (1 + e), 30 * lost], rel=1e-9)
 
 
 def test_crush_energy_returns_collisions_of_two_vehicles(cells):
@@ -55,13 +55,13 @@ def test_crush_energy_returns_collisions_of_two_vehicles(cells):
     for j in (1, 2):
         barrier = np.sqrt(both * closing**2 / 2 / (given[f"w_{j}"] / 32.174)) * MPH
         given |= uniform_crush(j, np.maximum((barrier - given[f"b0_{j}"]) / given[f"b1_{j}"], 0))
-    found = cells("crush-energy", given, ["V_close", "dV_1", "dV_2"])
+    result = cells("crush-energy", given, ["V_close", "dV_1", "dV_2"])
     whole = (given["c_1_1"] > 0) & (given["c_2_1"] > 0)
     assert whole.sum() > 250
-    np.testing.assert_allclose(found["V_close"][whole], closing[whole], rtol=1e-9)
+    np.testing.assert_allclose(result["V_close"][whole], closing[whole], rtol=1e-9)
     impulse = both * (1 + given["e"]) * closing
     for j in (1, 2):
-        np.testing.assert_allclose(found[f"dV_{j}"][whole], (impulse / (given[f"w_{j}"] / 32.174))[whole], rtol=1e-9)
+        np.testing.assert_allclose(result[f"dV_{j}"][whole], (impulse / (given[f"w_{j}"] / 32.174))[whole], rtol=1e-9)
 
 
 CENTRAL = {f"{symbol}_{j}": 0 for symbol in ("x", "y") for j in (1, 2)} | {"omega1_deg": 0, "omega2_deg": 0}
@@ -73,14 +73,14 @@ def test_a_central_impact_is_that_of_two_points(cells, contact):
     """Two cars lock, whichever way the contact is drawn: they go on with the momentum of both."""
     given = CENTRAL | {"w_1": 3000, "w_2": 4000, "V1_before": 30, "V2_before": 40, "alpha_1": 180, "alpha_2": 85}
     wanted = ["V1f_mph", "V2f_mph", "beta_1", "beta_2", "checks_hold", "approach_mph", "E_lost", "check_closing"]
-    found = {
+    result = {
         name: value.item() for name, value in cells("planar-forward", given | {"gamma_t": contact}, wanted).items()
     }
     carried = (3000 * 30 * np.exp(1j * np.pi) + 4000 * 40 * np.exp(1j * np.radians(85))) / 7000
-    assert [found["V1f_mph"], found["V2f_mph"]] == pytest.approx([abs(carried)] * 2, rel=1e-9)
-    assert [found["beta_1"], found["beta_2"]] == pytest.approx([np.degrees(np.angle(carried)) % 360] * 2, rel=1e-9)
-    assert found["check_closing"] == found["checks_hold"] == 1
-    assert found["approach_mph"] > 0
+    assert [result["V1f_mph"], result["V2f_mph"]] == pytest.approx([abs(carried)] * 2, rel=1e-9)
+    assert [result["beta_1"], result["beta_2"]] == pytest.approx([np.degrees(np.angle(carried)) % 360] * 2, rel=1e-9)
+    assert result["check_closing"] == result["checks_hold"] == 1
+    assert result["approach_mph"] > 0
 
 
 def test_a_central_impact_goes_back_through_planar_impact(cells):
@@ -98,20 +98,20 @@ def test_a_central_impact_goes_back_through_planar_impact(cells):
         name: value for name, value in given.items() if name not in ("e_n", "e_t", "closure") and "before" not in name
     }
     back |= {name: forward[name] for name in ("beta_1", "beta_2", "s_1", "s_2")}
-    found = cells("planar-impact", back, ["V1_mph", "V2_mph", "e_n", "e_t", "approach_mph", "check_closing"])
+    result = cells("planar-impact", back, ["V1_mph", "V2_mph", "e_n", "e_t", "approach_mph", "check_closing"])
     for j in (1, 2):
-        np.testing.assert_allclose(found[f"V{j}_mph"], given[f"V{j}_before"], rtol=1e-9)
-    np.testing.assert_allclose(found["e_n"], given["e_n"], rtol=1e-8, atol=1e-8)
-    np.testing.assert_allclose(found["approach_mph"], forward["approach_mph"], rtol=1e-8)
-    assert (found["check_closing"] == 1).all()
+        np.testing.assert_allclose(result[f"V{j}_mph"], given[f"V{j}_before"], rtol=1e-9)
+    np.testing.assert_allclose(result["e_n"], given["e_n"], rtol=1e-8, atol=1e-8)
+    np.testing.assert_allclose(result["approach_mph"], forward["approach_mph"], rtol=1e-8)
+    assert (result["check_closing"] == 1).all()
 
 
 def returned(cells, template, given, expected):
     """Check that a template returns what made its inputs: symbol of a cell -> values."""
-    found = cells(template, given, list(expected))
+    result = cells(template, given, list(expected))
     for symbol, values in expected.items():
         np.testing.assert_allclose(
-            found[symbol], np.broadcast_to(values, found[symbol].shape), rtol=1e-8, err_msg=symbol
+            result[symbol], np.broadcast_to(values, result[symbol].shape), rtol=1e-8, err_msg=symbol
         )
 
 
@@ -213,15 +213,15 @@ def test_the_speeds_of_crush_energy_are_those_that_momentum_energy_takes(cells, 
     for j in (1, 2):
         crush |= {f"w_{j}": weights[j], f"w_test_{j}": weights[j], f"L_{j}": 60.0, f"L_test_{j}": 60.0}
         crush |= {f"b0_{j}": 5.0, f"b1_{j}": 1.5} | uniform_crush(j, (barrier[j] - 5) / 1.5)
-    found = cells("crush-energy", crush, ["EES1_mph", "EES2_mph", "E_crush", "closing_mph"])
-    assert found["closing_mph"].item() == pytest.approx(closing, rel=1e-9)
+    result = cells("crush-energy", crush, ["EES1_mph", "EES2_mph", "E_crush", "closing_mph"])
+    assert result["closing_mph"].item() == pytest.approx(closing, rel=1e-9)
     centre = (mass[1] * speeds[1] - mass[2] * speeds[2]) / sum(mass.values())
     given = {"g": 32.174, "together": 0, "alpha_1": 0, "lane_2": 180, "omega1_deg": 0, "omega2_deg": 0}
     for j, before in ((1, speeds[1]), (2, -speeds[2])):
         beta, travel = run_out(complex(centre + e * (centre - before)), 0.7)
         given |= {f"w_{j}": weights[j], f"beta_{j}": beta, f"s_{j}": travel, f"f_{j}": 0.7, f"phi_{j}": 0}
-        given[f"EES_{j}"] = found[f"EES{j}_mph"].item()
-    returned(cells, "momentum-energy", given, {"V1_mph": speeds[1], "V2_mph": speeds[2], "E_lost": found["E_crush"]})
+        given[f"EES_{j}"] = result[f"EES{j}_mph"].item()
+    returned(cells, "momentum-energy", given, {"V1_mph": speeds[1], "V2_mph": speeds[2], "E_lost": result["E_crush"]})
 
 
 def test_the_centroid_of_a_profile_and_the_lever_arm_through_it_come_back(cells):
@@ -230,7 +230,7 @@ def test_the_centroid_of_a_profile_and_the_lever_arm_through_it_come_back(cells)
     depths = rng.uniform(0, 30, (6, n))
     given = {f"c_1_{i}": depths[i - 1] for i in range(1, 7)} | {"bias_1": 0.0, "L_1": rng.uniform(40, 70, n)}
     given |= {"theta_1": rng.uniform(-40, 40, n), "face_1": rng.uniform(80, 100, n), "aside_1": rng.uniform(-20, 20, n)}
-    found = cells("crush-energy", given, ["along_1", "inward_1", "arm_1", "h_used_1", "m_eff_1", "m_1", "k_1"])
+    result = cells("crush-energy", given, ["along_1", "inward_1", "arm_1", "h_used_1", "m_eff_1", "m_1", "k_1"])
     strips = (np.arange(50_000) + 0.5) / 50_000
     for trial in range(n):
         width = given["L_1"][trial]
@@ -241,14 +241,14 @@ def test_the_centroid_of_a_profile_and_the_lever_arm_through_it_come_back(cells)
         turned = np.radians(given["theta_1"][trial])
         force = np.array([-np.cos(turned), np.sin(turned)])
         arm = np.hypot(*(centre - force * (centre @ force))) / 12
-        assert [found[s][trial] for s in ("along_1", "inward_1", "arm_1")] == pytest.approx(
+        assert [result[s][trial] for s in ("along_1", "inward_1", "arm_1")] == pytest.approx(
             [along, inward, arm], rel=1e-6
         )
-    np.testing.assert_array_equal(found["arm_1"], found["h_used_1"])
-    effective = found["m_1"] * found["k_1"] ** 2 / (found["k_1"] ** 2 + found["arm_1"] ** 2)
-    np.testing.assert_allclose(found["m_eff_1"], effective, rtol=1e-12)
+    np.testing.assert_array_equal(result["arm_1"], result["h_used_1"])
+    effective = result["m_1"] * result["k_1"] ** 2 / (result["k_1"] ** 2 + result["arm_1"] ** 2)
+    np.testing.assert_allclose(result["m_eff_1"], effective, rtol=1e-12)
 
 
 def test_without_the_distance_of_the_face_the_lever_arm_is_that_of_the_inputs(cells):
-    found = cells("crush-energy", {"h_1": np.array([0.3, 1.7])}, ["h_used_1", "arm_1"])
-    np.testing.assert_array_equal(found["h_used_1"], [0.3, 1.7])
+    result = cells("crush-energy", {"h_1": np.array([0.3, 1.7])}, ["h_used_1", "arm_1"])
+    np.testing.assert_array_equal(result["h_used_1"], [0.3, 1.7])

@@ -34,9 +34,9 @@ def read_in(read):
 
 
 def test_rows_are_as_described_and_off(described, opened, read):
-    found = [name for name in BOOKS if described[name].evidence]
-    assert len(found) == 49
-    alike = [name for name in found if name in RECALCULATED]
+    result = [name for name in BOOKS if described[name].evidence]
+    assert len(result) == 49
+    alike = [name for name in result if name in RECALCULATED]
     assert len(alike) > 7
     for name in alike:
         book, template = opened(BOOKS[name]), described[name]
@@ -85,11 +85,13 @@ def test_a_recorder_away_from_the_cg_reads_the_turning_too(cells):
     """The velocity of a point is that of the CG and the rate of turning times its lever arm."""
     given = {"xs_1": 30, "ys_1": 24}
     wanted = ["edr1_long", "edr1_right", "dV1_long", "dV1_right", "d_omega_1", "spin_1", "omega1_f", "m_1"]
-    found = {symbol: value.item() for symbol, value in cells("planar-impact", given, wanted).items()}
+    result = {symbol: value.item() for symbol, value in cells("planar-impact", given, wanted).items()}
     to_mph = 3600 / 5280
-    assert found["edr1_long"] == pytest.approx(found["dV1_long"] + found["d_omega_1"] * 24 / 12 * to_mph, rel=1e-12)
-    assert found["edr1_right"] == pytest.approx(found["dV1_right"] - found["d_omega_1"] * 30 / 12 * to_mph, rel=1e-12)
-    assert math.isnan(found["spin_1"])
+    assert result["edr1_long"] == pytest.approx(result["dV1_long"] + result["d_omega_1"] * 24 / 12 * to_mph, rel=1e-12)
+    assert result["edr1_right"] == pytest.approx(
+        result["dV1_right"] - result["d_omega_1"] * 30 / 12 * to_mph, rel=1e-12
+    )
+    assert math.isnan(result["spin_1"])
     turned = {"phi_1": -40, "mu_R_1": 0.35, "R_1": 11, "I_1": 4960, "g": 32.174}
     spin = {symbol: value.item() for symbol, value in cells("planar-impact", turned, wanted).items()}
     work = 0.35 * spin["m_1"] * 32.174 * 11 * math.radians(40)

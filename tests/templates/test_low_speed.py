@@ -42,27 +42,27 @@ def test_momentum_closes_with_the_impulse_of_the_tyres(name, mass, g, per_second
     given |= {"V2_after": rng.uniform(3, 9, n), "t_impact": rng.uniform(0.08, 0.15, n), "g": g}
     given |= {"f_braked": rng.uniform(0.1, 0.7, n)}
     unit = "kmh" if name.endswith("si") else "mph"
-    found = cells(name, given, [f"V1b_{unit}", "dV_1b", "dV_2b", "taken", "closed_b", "a_mean_2"])
+    result = cells(name, given, [f"V1b_{unit}", "dV_1b", "dV_2b", "taken", "closed_b", "a_mean_2"])
     j = given["f_braked"] * g * given["t_impact"]
-    moved = found["dV_2b"] > 0
+    moved = result["dV_2b"] > 0
     assert moved.mean() > 0.5
-    lost, gained = given[f"{mass}_1"] * found["dV_1b"], given[f"{mass}_2"] * (found["dV_2b"] + j)
+    lost, gained = given[f"{mass}_1"] * result["dV_1b"], given[f"{mass}_2"] * (result["dV_2b"] + j)
     np.testing.assert_allclose(lost[moved], gained[moved], rtol=1e-9)
-    apart = found["dV_2b"] - (found["closed_b"] - found["dV_1b"])
-    np.testing.assert_allclose(apart, given["e"] * found["closed_b"], rtol=1e-9, atol=1e-12)
-    np.testing.assert_allclose(found["a_mean_2"], found["dV_2b"] / given["t_impact"] / g, rtol=1e-12)
+    apart = result["dV_2b"] - (result["closed_b"] - result["dV_1b"])
+    np.testing.assert_allclose(apart, given["e"] * result["closed_b"], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(result["a_mean_2"], result["dV_2b"] / given["t_impact"] / g, rtol=1e-12)
     if known == 2:
-        np.testing.assert_allclose(found["dV_2b"] * per_second, given["V2_after"], rtol=1e-9)
+        np.testing.assert_allclose(result["dV_2b"] * per_second, given["V2_after"], rtol=1e-9)
     else:
-        np.testing.assert_allclose(found[f"V1b_{unit}"], given["V1_before"], rtol=1e-9)
+        np.testing.assert_allclose(result[f"V1b_{unit}"], given["V1_before"], rtol=1e-9)
 
 
 def test_a_standing_vehicle_is_held_by_its_brakes(cells):
     """The blow is less than the brakes hold: it stays, and the other rebounds as from a wall."""
     given = {"known": 1, "V2_before": 0, "V1_before": 1, "e": 0.3, "t_impact": 0.5, "f_braked": 0.9}
-    found = cells("collinear", given, ["dV_2b", "dV_1b", "closed_b"])
-    assert found["dV_2b"].item() == 0
-    assert found["dV_1b"].item() == pytest.approx(1.3 * found["closed_b"].item())
+    result = cells("collinear", given, ["dV_2b", "dV_1b", "closed_b"])
+    assert result["dV_2b"].item() == 0
+    assert result["dV_1b"].item() == pytest.approx(1.3 * result["closed_b"].item())
 
 
 def test_a_stepped_impact_agrees(cells):
@@ -71,9 +71,9 @@ def test_a_stepped_impact_agrees(cells):
     v_1, v_2, duration = collided(m_1, m_2, closing, e, braked, 0.12, g)
     given = {"m_1": m_1, "m_2": m_2, "known": 1, "V2_before": 0, "V1_before": closing * 3.6, "g": g}
     given |= {"e": (v_2 - v_1) / closing, "t_impact": duration, "f_braked": braked}
-    found = cells("collinear-si", given, ["dV_1b", "dV_2b"])
-    assert found["dV_2b"].item() == pytest.approx(v_2, abs=0.03)
-    assert found["dV_1b"].item() == pytest.approx(closing - v_1, abs=0.03)
+    result = cells("collinear-si", given, ["dV_1b", "dV_2b"])
+    assert result["dV_2b"].item() == pytest.approx(v_2, abs=0.03)
+    assert result["dV_1b"].item() == pytest.approx(closing - v_1, abs=0.03)
 
 
 @pytest.mark.parametrize("name", ["collinear", "collinear-si"])

@@ -58,10 +58,10 @@ def test_times_as_counted_by_the_mean_rate_would_be_wrong(read):
 def test_a_steady_speed_is_a_straight_line(read):
     times, places = [0.0, 0.1, 0.23, 0.31], [0.0, 4.1, 9.0, 12.6]
     slope, _ = np.polyfit(times, places, 1)
-    found = values_of(
+    result = values_of(
         entered(read("video-speed"), times, places, {"bend": 0}), ["v_end", "v_first", "a_fit", "rec_free"]
     )
-    assert found == [pytest.approx(slope), pytest.approx(slope), "–", 2]
+    assert result == [pytest.approx(slope), pytest.approx(slope), "–", 2]
 
 
 @pytest.mark.parametrize("typed_error", [True, False], ids=["error typed", "from the scatter"])
@@ -77,11 +77,11 @@ def test_ranges_hold_the_truth_as_often_as_they_say(typed_error, read):
         run = simulated(model_of(entered(read("video-speed"), times, places, given | held_fixed)), 4_000)
         scale = run.inputs["Many frames: length of one unit of the positions on sheet Record"]
         truth = {"end": (50 - 0.3 * 32.174 * t[-1]) * 3600 / 5280, "slowing": 0.3}
-        found = {
+        result = {
             "end": run["Vehicle speed at the last mark"].values / scale,
             "slowing": run["Vehicle deceleration, of many frames"].values / scale,
         }
-        for what, values in found.items():
+        for what, values in result.items():
             low, high = np.quantile(values, [0.1, 0.9])
             held[what] += low <= truth[what] <= high
     for what, count in held.items():

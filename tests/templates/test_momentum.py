@@ -73,8 +73,8 @@ def test_speed_of_vehicle_2_keeps_its_digits(name, what, value, error, cells, de
         turn = value - scene["alpha_2"]
         scene |= {symbol: scene[symbol] + turn for symbol in ("alpha_1", "beta_1", "beta_2")}
         scene["alpha_2"] = np.full(n, value)
-    found = cells(name, scene, ["V2_i"])["V2_i"]
+    result = cells(name, scene, ["V2_i"])["V2_i"]
     exact = [exact_speed_2({symbol: values[i] for symbol, values in scene.items()}) for i in range(n)]
-    off = [abs(Decimal(float(x)) - truth) for x, (truth, _) in zip(found, exact, strict=True)]
+    off = [abs(Decimal(float(x)) - truth) for x, (truth, _) in zip(result, exact, strict=True)]
     assert np.median([float(d / abs(truth)) for d, (truth, _) in zip(off, exact, strict=True)]) <= error
     assert max(float(d / terms) for d, (_, terms) in zip(off, exact, strict=True)) <= 8 * error

@@ -34,12 +34,12 @@ def impacts(n, seed):
 def test_impacts_come_back_from_their_run_outs(cells, car_known):
     given, (v1, v2), change = impacts(300, 7)
     given |= {"car_known": car_known, "V2_before": v2 * MPH}
-    found = cells("motorcycle", given, ["vi_mph", "V2_mph", "dV2_mph", "across", "check_energy"])
-    np.testing.assert_allclose(found["vi_mph"], v1 * MPH, rtol=1e-9)
-    np.testing.assert_allclose(found["V2_mph"], v2 * MPH, rtol=1e-9)
-    np.testing.assert_allclose(found["dV2_mph"], change * MPH, rtol=1e-9)
+    result = cells("motorcycle", given, ["vi_mph", "V2_mph", "dV2_mph", "across", "check_energy"])
+    np.testing.assert_allclose(result["vi_mph"], v1 * MPH, rtol=1e-9)
+    np.testing.assert_allclose(result["V2_mph"], v2 * MPH, rtol=1e-9)
+    np.testing.assert_allclose(result["dV2_mph"], change * MPH, rtol=1e-9)
     if car_known == 2:
-        np.testing.assert_allclose(found["across"], 0, atol=1e-8)
+        np.testing.assert_allclose(result["across"], 0, atol=1e-8)
 
 
 @pytest.mark.parametrize("alpha_2", [0, 90, 180, 270])
@@ -52,9 +52,9 @@ def test_momentum_along_its_way_needs_no_crossing(cells, alpha_2):
     given |= {"f_1": 0.5, "f_2": 0.5}
     for j in (1, 2):
         given |= {f"beta_{j}": np.degrees(np.angle(after[j - 1])), f"s_{j}": abs(after[j - 1]) ** 2 / G}
-    found = {name: value.item() for name, value in cells("motorcycle", given, ["vm_mph", "across"]).items()}
-    assert found["vm_mph"] == pytest.approx(45, rel=1e-9)
-    assert found["across"] == pytest.approx(0, abs=1e-9)
+    result = {name: value.item() for name, value in cells("motorcycle", given, ["vm_mph", "across"]).items()}
+    assert result["vm_mph"] == pytest.approx(45, rel=1e-9)
+    assert result["across"] == pytest.approx(0, abs=1e-9)
 
 
 @pytest.mark.parametrize("car_known", [1, 2])
@@ -109,9 +109,9 @@ def test_a_rider_who_flies_lands_and_slides_gives_the_speed_back(cells):
     assert (slid > 0).all()
     s = along * (up + landing) / G + slid**2 / (2 * mu * G)
     given = {"s": s, "mu": mu, "H": fall, "angle": angle, "efficiency": share, "g": G, "known": 3}
-    found = cells("motorcycle", given, ["vr_mph", "vi_mph", "check_known"])
-    np.testing.assert_allclose(found["vr_mph"], v * MPH, rtol=1e-9)
-    np.testing.assert_allclose(found["vi_mph"], v * MPH, rtol=1e-9)
+    result = cells("motorcycle", given, ["vr_mph", "vi_mph", "check_known"])
+    np.testing.assert_allclose(result["vr_mph"], v * MPH, rtol=1e-9)
+    np.testing.assert_allclose(result["vi_mph"], v * MPH, rtol=1e-9)
 
 
 @pytest.mark.parametrize("grade", [-8, 0, 8])
@@ -124,9 +124,9 @@ def test_skid_and_slide_come_before_the_impact(cells, grade):
         v -= dt * G * (friction * np.cos(slope) + np.sin(slope))
         x, t = x + v * dt, t + dt
     given = {"known": 1, "v_given": v * MPH, "f_upright": 0.65, "d_upright": 60, "f_slide": 0.5, "d_slide": 30, "g": G}
-    found = cells("motorcycle", given | {"grade": grade}, ["v0_mph", "t_before"])
-    assert found["v0_mph"].item() == pytest.approx(70 * MPH, rel=1e-4)
-    assert found["t_before"].item() == pytest.approx(t, rel=1e-3)
+    result = cells("motorcycle", given | {"grade": grade}, ["v0_mph", "t_before"])
+    assert result["v0_mph"].item() == pytest.approx(70 * MPH, rel=1e-4)
+    assert result["t_before"].item() == pytest.approx(t, rel=1e-3)
 
 
 def test_a_regression_waits_until_it_has_a_scatter_and_a_wheelbase(cells):

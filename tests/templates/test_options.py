@@ -30,24 +30,24 @@ def test_the_turn_limits_speed_once_its_radius_is_entered(name, typed, run_of):
 def test_duration_gives_mean_acceleration_and_the_neglected_impulse(name, cells, shown):
     assert shown(name)["dV_tyres_1"] == "–"
     given = {"t_impact": 0.1, "f_1": 0.8}
-    found = cells(name, given, ["dV_tyres_1", "a_mean_1", "dV_1", "share_tyres_1"])
-    assert found["dV_tyres_1"].item() == pytest.approx(1.8, abs=0.05)  # DOMAIN: about 1.8 mph for 0.1 s at 0.8
-    assert found["a_mean_1"].item() == pytest.approx(found["dV_1"].item() / 0.1 / 32.174, rel=1e-12)
-    assert found["share_tyres_1"].item() == pytest.approx(100 * 0.8 * 32.174 * 0.1 / found["dV_1"].item(), rel=1e-12)
+    result = cells(name, given, ["dV_tyres_1", "a_mean_1", "dV_1", "share_tyres_1"])
+    assert result["dV_tyres_1"].item() == pytest.approx(1.8, abs=0.05)  # DOMAIN: about 1.8 mph for 0.1 s at 0.8
+    assert result["a_mean_1"].item() == pytest.approx(result["dV_1"].item() / 0.1 / 32.174, rel=1e-12)
+    assert result["share_tyres_1"].item() == pytest.approx(100 * 0.8 * 32.174 * 0.1 / result["dV_1"].item(), rel=1e-12)
 
 
 @pytest.mark.parametrize("name", [*TURNING, "planar-forward"])
 @pytest.mark.parametrize(
-    ("friction", "duration", "said"), [(0.8, None, True), (0.01, None, False), (0.8, 0.001, False)]
+    ("friction", "duration", "message"), [(0.8, None, True), (0.01, None, False), (0.8, 0.001, False)]
 )
-def test_tyres_that_matter_are_named_without_a_duration_too(name, friction, duration, said, read):
+def test_tyres_that_matter_are_named_without_a_duration_too(name, friction, duration, message, read):
     """By 0.1 s of contact; on sheet Inputs beside the checks."""
     given = {"f_1": friction, "f_2": friction} | ({} if duration is None else {"t_impact": duration})
     slow = {"w_1": 4000.0} if name == "planar-forward" else {"s_1": 4.0, "s_2": 4.0}
     done = computed(with_typed(read(name), given | slow))
     status = done["Inputs", 2, 0]
-    assert ("use a model that keeps them" in status) == said
-    assert ("in 0.10 s" in status) == said
+    assert ("use a model that keeps them" in status) == message
+    assert ("in 0.10 s" in status) == message
 
 
 @pytest.mark.parametrize("name", [*TURNING, "momentum-energy"])

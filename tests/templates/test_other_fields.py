@@ -69,8 +69,8 @@ KINDS = {
 
 @pytest.mark.parametrize("name", KINDS)
 def test_answers_show_what_they_are(name, model_of):
-    found = {each.name: each.kind for each in model_of(name).forecasts}
-    assert KINDS[name].items() <= found.items()
+    result = {each.name: each.kind for each in model_of(name).forecasts}
+    assert KINDS[name].items() <= result.items()
 
 
 @pytest.mark.parametrize("name", OTHERS)
@@ -135,9 +135,9 @@ def test_the_gap_has_the_variance_of_its_parts(long_run):
     parts = {each: moments(p[each]) for each in ("housing", "bearing", "spacer", "gear", "ring")}
     mean = parts["housing"][0] - sum(m for m, _ in list(parts.values())[1:])
     variance = sum(v for _, v in parts.values())
-    found = run["Gap as assembled"].statistics
-    assert is_near(found.mean.value, mean, math.sqrt(variance))
-    assert found.standard_deviation.value == pytest.approx(math.sqrt(variance), rel=0.01)
+    result = run["Gap as assembled"].statistics
+    assert is_near(result.mean.value, mean, math.sqrt(variance))
+    assert result.standard_deviation.value == pytest.approx(math.sqrt(variance), rel=0.01)
     shares = {row.assumption: row for row in sensitivities(run)["Gap as assembled"].influences}
     names = {row.symbol: row.name for row in editions(TEMPLATES["tolerance-stack"])[Edition.SI].assumptions}
     for symbol, (_, part) in parts.items():
@@ -214,10 +214,10 @@ def test_a_stack_of_four_is_a_sum_of_rectangular_quantities(widest, read):
         half = math.sqrt(3) * (widest if symbol == "ring" else 1)
         blank = dict.fromkeys(("Likeliest", "Mean", "Std_dev"))
         typed |= {symbol: 0, **row(symbol, Distribution="Uniform", Low=-half, High=half, **blank)}
-    found = simulated(typed_cells.model_of(with_typed(book, typed)), TRIALS)["Gap as assembled"]
-    assert is_near(found.statistics.mean.value, 0, deviation)
-    assert found.statistics.standard_deviation.value == pytest.approx(deviation, rel=0.01)
-    np.testing.assert_allclose(np.quantile(found.values, [0.025, 0.975]), [-end, end], atol=0.01 * deviation)
+    result = simulated(typed_cells.model_of(with_typed(book, typed)), TRIALS)["Gap as assembled"]
+    assert is_near(result.statistics.mean.value, 0, deviation)
+    assert result.statistics.standard_deviation.value == pytest.approx(deviation, rel=0.01)
+    np.testing.assert_allclose(np.quantile(result.values, [0.025, 0.975]), [-end, end], atol=0.01 * deviation)
 
 
 # Calibration of a weight
@@ -226,7 +226,7 @@ def test_a_stack_of_four_is_a_sum_of_rectangular_quantities(widest, read):
 def test_a_calibration_gives_what_quadrature_over_its_densities_gives(long_run):
     """Given the densities the deviation is normal: its distribution is a mean of normal ones."""
     p = given("mass-calibration")
-    found = long_run("mass-calibration")["Deviation from the nominal mass"]
+    result = long_run("mass-calibration")["Deviation from the nominal mass"]
     x, w = gauss(24)
     air, weight, reference = (
         p[each]["Low"] + (p[each]["High"] - p[each]["Low"]) * x for each in ("rho_a", "rho_W", "rho_R")
@@ -237,10 +237,10 @@ def test_a_calibration_gives_what_quadrature_over_its_densities_gives(long_run):
     buoyancy = (p["m_Rc"]["Mean"] + p["dm_Rc"]["Mean"]) * (a - p["rho_a0"]) * (1 / b - 1 / c)
     spread = math.hypot(p["m_Rc"]["Std dev"], p["dm_Rc"]["Std dev"])
     deviation = math.sqrt(spread**2 + float(np.sum(share * buoyancy**2)) - float(np.sum(share * buoyancy)) ** 2)
-    assert is_near(found.statistics.mean.value, mean + float(np.sum(share * buoyancy)), deviation)
-    assert found.statistics.standard_deviation.value == pytest.approx(deviation, rel=0.007)
+    assert is_near(result.statistics.mean.value, mean + float(np.sum(share * buoyancy)), deviation)
+    assert result.statistics.standard_deviation.value == pytest.approx(deviation, rel=0.007)
     for quantile in (0.025, 0.975):
-        at = np.quantile(found.values, quantile)
+        at = np.quantile(result.values, quantile)
         below = float(np.sum(share * stats.norm.cdf((at - mean - buoyancy) / spread)))
         assert is_share(below, quantile)
 
@@ -324,12 +324,12 @@ def test_a_project_has_the_mean_and_the_deviation_of_its_parts(long_run):
             weight = math.prod(p["daily"] if each.startswith("t") else 1 for each in (one, two))
             money_variance += 2 * weight * joint(at[one], at[two], rank)
     money_variance += 2 * p["daily"] * later_with_cost(time, cost["site"], rows[frozenset(("t_site", "c_site"))])
-    found = run["Cost of the project"].statistics
-    assert is_near(found.mean.value, money, math.sqrt(money_variance))
-    assert found.standard_deviation.value == pytest.approx(math.sqrt(money_variance), rel=0.006)
-    found = run["Duration"].statistics
-    assert is_near(found.mean.value, days, math.sqrt(days_variance))
-    assert found.standard_deviation.value == pytest.approx(math.sqrt(days_variance), rel=0.006)
+    result = run["Cost of the project"].statistics
+    assert is_near(result.mean.value, money, math.sqrt(money_variance))
+    assert result.standard_deviation.value == pytest.approx(math.sqrt(money_variance), rel=0.006)
+    result = run["Duration"].statistics
+    assert is_near(result.mean.value, days, math.sqrt(days_variance))
+    assert result.standard_deviation.value == pytest.approx(math.sqrt(days_variance), rel=0.006)
     assert is_share(run["Procurement decides the finish"].statistics.mean.value, critical)
 
 
@@ -357,9 +357,9 @@ def later_with_cost(time, cost, rank):
 
 
 def test_a_finish_is_a_working_day(long_run):
-    found = np.unique(long_run("project")["Finish"].values)
-    assert (np.mod(found, 7) >= 2).all()  # days 0 and 1 of 7 are a Saturday and a Sunday
-    assert len(found) > 50
+    result = np.unique(long_run("project")["Finish"].values)
+    assert (np.mod(result, 7) >= 2).all()  # days 0 and 1 of 7 are a Saturday and a Sunday
+    assert len(result) > 50
 
 
 # Warranty

@@ -33,13 +33,13 @@ BARRIER = {
 
 def test_the_published_barrier_impact(cells):
     """Tolerance: half a unit of the last digit printed, or what the rounding of the printed inputs leaves."""
-    found = cells("planar-forward", BARRIER, ["dV1_long", "dV1_right", "d_omega1_deg", "E_lost", "mu_used", "V_slide"])
-    assert found["dV1_long"].item() == pytest.approx(-35.7275, abs=5e-4)
-    assert found["dV1_right"].item() == pytest.approx(-7.5998, abs=5e-4)
-    assert found["d_omega1_deg"].item() == pytest.approx(-176.43, abs=0.01)
-    assert found["E_lost"].item() == pytest.approx(170_421, rel=1e-5)
-    assert abs(found["mu_used"].item()) < 0.82  # friction suffices: the contact stops sliding
-    assert found["V_slide"].item() == pytest.approx(0, abs=1e-9)
+    result = cells("planar-forward", BARRIER, ["dV1_long", "dV1_right", "d_omega1_deg", "E_lost", "mu_used", "V_slide"])
+    assert result["dV1_long"].item() == pytest.approx(-35.7275, abs=5e-4)
+    assert result["dV1_right"].item() == pytest.approx(-7.5998, abs=5e-4)
+    assert result["d_omega1_deg"].item() == pytest.approx(-176.43, abs=0.01)
+    assert result["E_lost"].item() == pytest.approx(170_421, rel=1e-5)
+    assert abs(result["mu_used"].item()) < 0.82  # friction suffices: the contact stops sliding
+    assert result["V_slide"].item() == pytest.approx(0, abs=1e-9)
 
 
 @pytest.fixture
@@ -71,8 +71,8 @@ def test_it_is_planar_impact_turned_round(cells, scenes):
     scene, solved = scenes
     wanted = ["beta_1", "beta_2", "s_1", "s_2", "V1_f", "V2_f", "dV1_mph", "dV2_mph"]
     wanted += ["omega1_f", "omega2_f", "E_lost", "PDOF_1", "PDOF_2", "V_close_n", "V_close_t"]
-    found = cells("planar-forward", forward_inputs(scene, solved), wanted)
-    for symbol, values in found.items():
+    result = cells("planar-forward", forward_inputs(scene, solved), wanted)
+    for symbol, values in result.items():
         truth = scene[symbol] if symbol in scene else solved[symbol]
         np.testing.assert_allclose(values, truth, rtol=1e-9, atol=1e-9 * np.abs(truth).max(), err_msg=symbol)
 
@@ -95,8 +95,8 @@ def test_friction_never_drives_the_contact_backward(cells, scenes):
     """Closure 2: what sliding is left keeps its direction and grows no larger, or there is none."""
     scene, solved = scenes
     given = forward_inputs(scene, solved) | {"closure": 2, "mu": np.linspace(0, 3, 1_000)}
-    found = cells("planar-forward", given, ["V_slide", "V_close_t", "mu_used", "mu_full", "E_lost"])
-    assert (np.abs(found["mu_used"]) <= np.abs(found["mu_full"]) * (1 + 1e-12)).all()
-    stuck = np.abs(found["mu_used"]) < given["mu"]
-    np.testing.assert_allclose(found["V_slide"][stuck], 0, atol=1e-9)
+    result = cells("planar-forward", given, ["V_slide", "V_close_t", "mu_used", "mu_full", "E_lost"])
+    assert (np.abs(result["mu_used"]) <= np.abs(result["mu_full"]) * (1 + 1e-12)).all()
+    stuck = np.abs(result["mu_used"]) < given["mu"]
+    np.testing.assert_allclose(result["V_slide"][stuck], 0, atol=1e-9)
     assert 100 < stuck.sum() < 1_000

@@ -85,9 +85,9 @@ def as_printed(v):
 def test_the_cells_are_the_equations_written_by_hand(cells, scenes):
     """The workbook, compiled, against `evaluate`: two codings of one model, bit for bit but for the order of sums."""
     ours = evaluate(scenes)
-    found = cells("planar-impact", scenes, [symbol for symbol in ours if symbol != "checks_hold"])
-    assert len(found) > 60
-    for symbol, values in found.items():
+    result = cells("planar-impact", scenes, [symbol for symbol in ours if symbol != "checks_hold"])
+    assert len(result) > 60
+    for symbol, values in result.items():
         scale = np.abs(ours[symbol]).max()
         np.testing.assert_allclose(values, ours[symbol], rtol=1e-11, atol=1e-13 * scale, err_msg=symbol)
 

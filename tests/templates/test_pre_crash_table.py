@@ -90,10 +90,10 @@ def test_rounding_is_covered_by_the_error_of_the_line(read):
         for column in (1, 2)
     }
     book = pasted(read("edr-speed-si"), tables[0], {"kappa": KAPPA, "bias": BIAS, "q": 0.0, "tau": 0.0})
-    found = computed_at(book, varies, ["vi_kmh", "rec_share"])
-    share = found["rec_share"]
+    result = computed_at(book, varies, ["vi_kmh", "rec_share"])
+    share = result["rec_share"]
     assert np.max(share) < 0.7
-    off = (found["vi_kmh"] - (before - rate * begun)) * (1 - KAPPA) / (share / np.sqrt(12))
+    off = (result["vi_kmh"] - (before - rate * begun)) * (1 - KAPPA) / (share / np.sqrt(12))
     assert 0.7 < np.std(off) < 1.3
     assert abs(np.mean(off)) < 4 / np.sqrt(records)
 
@@ -145,11 +145,11 @@ def test_the_table_of_a_report_is_read_as_it_is_printed(name, units, written, re
     unit = "kmh" if name.endswith("-si") else "mph"
     wanted = [f"vi_{unit}", "a_brake", "x_record", "t_braked", "t_released", "checks_hold"]
     given = {"kappa": KAPPA, "bias": BIAS, "q": 0.0, "tau": 0.04}
-    found = values_of(with_typed(read(name), cells | given), wanted)
+    result = values_of(with_typed(read(name), cells | given), wanted)
     alone = values_of(pasted(read(name), plain, given), wanted)
-    assert found[:4] == pytest.approx(alone[:4], rel=1e-6)
+    assert result[:4] == pytest.approx(alone[:4], rel=1e-6)
     released = max(time for time, _, brake in plain if brake == "Off")
-    assert found[4:] == [pytest.approx(0.04 - released), True]
+    assert result[4:] == [pytest.approx(0.04 - released), True]
 
 
 @pytest.mark.parametrize(

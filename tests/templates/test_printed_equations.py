@@ -141,7 +141,7 @@ def as_python(equation, names):
     """A printed equation with the names of values in the place of its symbols, the longest first."""
     symbols = sorted(names, key=len, reverse=True)
     any_symbol = "|".join(rf"(?<![\w]){re.escape(symbol)}(?!(?!²)[\w′])" for symbol in symbols)
-    text = re.sub(any_symbol, lambda found: names[found[0]], equation)
+    text = re.sub(any_symbol, lambda result: names[result[0]], equation)
     for sign, message in SIGNS.items():
         text = text.replace(sign, message)
     for function, called in CALLS.items():
@@ -166,7 +166,7 @@ def test_a_printed_equation_computed_as_mathematics_gives_its_cell(described, sh
         # An angle is in degrees wherever Excel's formula has to turn it into radians.
         degrees = re.search(r"\b(SIN|COS|TAN)\((?!RADIANS)", row.formula) is None
         text = as_python(printed(row.formula, notation), names)
-        found = eval(text, functions(degrees) | {"v": values})
-        assert found == pytest.approx(values[row.symbol], rel=1e-9, abs=1e-9), (row.symbol, text)
+        result = eval(text, functions(degrees) | {"v": values})
+        assert result == pytest.approx(values[row.symbol], rel=1e-9, abs=1e-9), (row.symbol, text)
         compared += 1
     assert compared > 4

@@ -14,11 +14,11 @@ REST = ["beta_1", "s_1", "beta_2", "s_2"]
 
 
 def test_the_readings_are_what_the_truth_leads_to(cells, described):
-    found = cells("rest-positions", TRUTH, REST)
+    result = cells("rest-positions", TRUTH, REST)
     readings = {row.symbol: row.reading for row in described["rest-positions"].evidence if row.reading is not None}
     assert list(readings) == ["beta_1", "s_1", "beta_2", "s_2"]
     for symbol, reading in readings.items():
-        assert found[symbol].item() == pytest.approx(reading, abs=0.05), symbol
+        assert result[symbol].item() == pytest.approx(reading, abs=0.05), symbol
 
 
 def test_the_truth_comes_back(model_of, described):
@@ -50,8 +50,8 @@ def test_a_truth_drawn_from_the_ranges_is_anywhere_among_the_trials_that_fit(cel
             fits &= np.abs((off + 180) % 360 - 180 if symbol.startswith("beta") else off) <= most
         fits[truth] = False
         if fits.sum() >= 20:
-            for symbol, found in ranks.items():
-                found.append(np.mean(drawn[symbol][fits] < drawn[symbol][truth]))
-    for symbol, found in ranks.items():
-        assert len(found) > 100
-        assert kstest(found, "uniform").pvalue > 1e-3, symbol
+            for symbol, result in ranks.items():
+                result.append(np.mean(drawn[symbol][fits] < drawn[symbol][truth]))
+    for symbol, result in ranks.items():
+        assert len(result) > 100
+        assert kstest(result, "uniform").pvalue > 1e-3, symbol

@@ -25,12 +25,12 @@ def test_the_range_is_that_of_the_points_and_straight_between_them(name, cells, 
         if name.startswith("planar")
         else {"V1_before": scale * 10, "known": 1}
     )
-    found = cells(name, given, [restitution, speed, "e_least", "e_most", "e_off"])
-    assert found[speed].min() < points[0][0] < points[0][2] < found[speed].max()
+    result = cells(name, given, [restitution, speed, "e_least", "e_most", "e_off"])
+    assert result[speed].min() < points[0][0] < points[0][2] < result[speed].max()
     for symbol, ends in (("e_least", points[1]), ("e_most", points[2])):
-        np.testing.assert_allclose(found[symbol], np.interp(found[speed], points[0], ends), rtol=1e-12)
-    middle, wide = (found["e_least"] + found["e_most"]) / 2, found["e_most"] - found["e_least"]
-    np.testing.assert_allclose(found[restitution], middle + found["e_off"] * wide / 4, rtol=1e-9, atol=1e-12)
+        np.testing.assert_allclose(result[symbol], np.interp(result[speed], points[0], ends), rtol=1e-12)
+    middle, wide = (result["e_least"] + result["e_most"]) / 2, result["e_most"] - result["e_least"]
+    np.testing.assert_allclose(result[restitution], middle + result["e_off"] * wide / 4, rtol=1e-9, atol=1e-12)
 
 
 @pytest.mark.parametrize("row", ["within the published range", "by the published scatter"])

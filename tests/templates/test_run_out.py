@@ -47,16 +47,16 @@ def test_a_run_out_over_four_segments_comes_back(name, g, per_second, cells):
             given["f_1" if k == 1 else f"f_1_{k}"] = friction
         speed, _ = slowed(speed, drag(friction, share, 0.015, grade) * g, length)
     given["v_end_1"] = speed * per_second
-    found = cells(name, given, ["V1_f", "way_1", "way_2", "check_run_out"])
-    np.testing.assert_allclose(found["V1_f"], before, rtol=1e-12)
-    assert [found[symbol][0] for symbol in ("way_1", "way_2", "check_run_out")] == [1, 0, 1]
+    result = cells(name, given, ["V1_f", "way_1", "way_2", "check_run_out"])
+    np.testing.assert_allclose(result["V1_f"], before, rtol=1e-12)
+    assert [result[symbol][0] for symbol in ("way_1", "way_2", "check_run_out")] == [1, 0, 1]
 
 
 @pytest.mark.parametrize(("name", "g", "per_second"), EDITIONS)
 def test_a_speed_that_is_typed_in_takes_the_place_of_the_run_out(name, g, per_second, cells):
-    found = cells(name, {"v_after_2": np.array([18.0, 0.0]), "s_2": 1e9, "s_2_2": 5.0}, ["V2_f", "way_2"])
-    np.testing.assert_allclose(found["V2_f"], [18.0 / per_second, 0.0], rtol=1e-15)
-    assert (found["way_2"] == 2).all()
+    result = cells(name, {"v_after_2": np.array([18.0, 0.0]), "s_2": 1e9, "s_2_2": 5.0}, ["V2_f", "way_2"])
+    np.testing.assert_allclose(result["V2_f"], [18.0 / per_second, 0.0], rtol=1e-15)
+    assert (result["way_2"] == 2).all()
 
 
 @pytest.mark.parametrize(("name", "g", "per_second"), EDITIONS)
@@ -120,5 +120,5 @@ def test_a_row_with_a_range_is_drawn_and_one_without_a_value_is_none(read):
     drawn = run.inputs["Vehicle 1 run-out, segment 2: length"]
     assert 8 <= drawn.min() < 8.1 < 11.9 < drawn.max() <= 12
     held = model(with_typed(book, {row: 10.0}))
-    (found,) = [each for each in held.assumptions if "segment 2" in each.name]
-    assert (found.frozen, found.base) == (True, 10.0)
+    (result,) = [each for each in held.assumptions if "segment 2" in each.name]
+    assert (result.frozen, result.base) == (True, 10.0)

@@ -17,8 +17,8 @@ STEP = 1e-3
 SEEDS = pytest.mark.parametrize("seed", range(4))
 
 
-def one(found):
-    return {symbol: value.item() for symbol, value in found.items()}
+def one(result):
+    return {symbol: value.item() for symbol, value in result.items()}
 
 
 def braked_over(v, length, a):
@@ -85,8 +85,10 @@ def test_air_brakes_that_rise(cells, seed):
     rng = np.random.default_rng(seed)
     rise, f, start = rng.uniform(0.2, 0.8), rng.uniform(0.4, 0.7), rng.uniform(50, 100)
     length, _ = way_to_rest(start, lambda t: f * G * min(t / rise, 1))
-    found = one(cells("skid", {"f_1": f, "d_1": length, "t_rise": rise, "g": G, "known": 1, "v_end": 0}, ["v_air_mph"]))
-    assert found["v_air_mph"] == pytest.approx(start * MPH, rel=1e-5)
+    result = one(
+        cells("skid", {"f_1": f, "d_1": length, "t_rise": rise, "g": G, "known": 1, "v_end": 0}, ["v_air_mph"])
+    )
+    assert result["v_air_mph"] == pytest.approx(start * MPH, rel=1e-5)
 
 
 @SEEDS
@@ -107,9 +109,9 @@ def test_a_yaw_mark_on_a_bank(cells, seed):
     chord = np.linalg.norm(last - first)
     ordinate = np.linalg.norm(between - (first + last) / 2)
     given = {"chord": chord, "ordinate": ordinate, "f": f, "bank": bank, "offset": 0, "g": G}
-    found = one(cells("critical-speed-yaw", given, ["v_mph", "checks_hold"]))
-    assert found["v_mph"] == pytest.approx(v * MPH, rel=1e-5)
-    assert found["checks_hold"] == 1
+    result = one(cells("critical-speed-yaw", given, ["v_mph", "checks_hold"]))
+    assert result["v_mph"] == pytest.approx(v * MPH, rel=1e-5)
+    assert result["checks_hold"] == 1
 
 
 THROW = ["v_throw", "v_level", "v_least", "u_after"]
@@ -122,12 +124,12 @@ def test_a_throw_of_flight_landing_and_slide(cells, degrees, fall):
     distance, slid = thrown(v, math.radians(degrees), mu, fall)
     assert slid is (degrees < 60)  # a steep throw stops where it lands
     given = {"s": distance, "mu": mu, "H": fall, "angle": degrees, "efficiency": 0.9, "g": G}
-    found = one(cells("pedestrian-throw", given, [*THROW, "V_vehicle_mph"]))
-    assert found["v_throw"] == pytest.approx(v, rel=1e-9)
-    assert found["V_vehicle_mph"] == pytest.approx(v / 0.9 * MPH, rel=1e-9)
-    assert found["v_least"] <= v * (1 + 1e-12)
-    assert (found["v_level"] >= v * (1 - 1e-12)) is (0 <= degrees < 60)  # else it was faster: no upper limit
-    assert (found["u_after"] >= 0) is slid
+    result = one(cells("pedestrian-throw", given, [*THROW, "V_vehicle_mph"]))
+    assert result["v_throw"] == pytest.approx(v, rel=1e-9)
+    assert result["V_vehicle_mph"] == pytest.approx(v / 0.9 * MPH, rel=1e-9)
+    assert result["v_least"] <= v * (1 + 1e-12)
+    assert (result["v_level"] >= v * (1 - 1e-12)) is (0 <= degrees < 60)  # else it was faster: no upper limit
+    assert (result["u_after"] >= 0) is slid
 
 
 def test_any_throw_comes_back_and_no_angle_throws_so_far_at_a_lower_speed(cells):
@@ -141,10 +143,10 @@ def test_any_throw_comes_back_and_no_angle_throws_so_far_at_a_lower_speed(cells)
     v, angle, mu, fall = np.array(draws).T
     distance, slid = np.array([s for s, _ in made]), np.array([slid for _, slid in made])
     assert 60 < slid.sum() < 240
-    found = cells("pedestrian-throw", {"s": distance, "mu": mu, "H": fall, "angle": np.degrees(angle), "g": G}, THROW)
-    np.testing.assert_allclose(found["v_throw"], v, rtol=1e-8)
-    assert (found["v_least"] <= v * (1 + 1e-9)).all()
-    assert ((found["u_after"] >= 0) == slid).all()
+    result = cells("pedestrian-throw", {"s": distance, "mu": mu, "H": fall, "angle": np.degrees(angle), "g": G}, THROW)
+    np.testing.assert_allclose(result["v_throw"], v, rtol=1e-8)
+    assert (result["v_least"] <= v * (1 + 1e-9)).all()
+    assert ((result["u_after"] >= 0) == slid).all()
     given = {"s": distance, "mu": mu, "H": fall, "angle": np.degrees(angle), "efficiency": 1, "g": G, "known": 2}
     np.testing.assert_allclose(cells("pedestrian", given, ["v_i"])["v_i"], v, rtol=1e-8)
 
@@ -154,22 +156,22 @@ def test_a_level_throw(cells):
     for v, fall in ((40.0, 2.3), (6.0, 2.3), (3.0, 4.0)):
         distance, slid = thrown(v, 0.0, 0.66, fall)
         assert slid is (v > 10)
-        found = one(cells("pedestrian-throw", {"s": distance, "mu": 0.66, "H": fall, "g": G}, ["v_level"]))
-        assert found["v_level"] == pytest.approx(v, rel=1e-9)
+        result = one(cells("pedestrian-throw", {"s": distance, "mu": 0.66, "H": fall, "g": G}, ["v_level"]))
+        assert result["v_level"] == pytest.approx(v, rel=1e-9)
 
 
 def test_the_least_speed_is_reached_at_the_best_angle(cells):
     for mu, fall in ((0.5, 0.0), (0.66, 2.3), (0.8, 2.7)):
         distance, slid = thrown(50.0, math.atan(mu), mu, fall)
-        found = one(cells("pedestrian-throw", {"s": distance, "mu": mu, "H": fall, "g": G}, ["v_least", "angle_best"]))
+        result = one(cells("pedestrian-throw", {"s": distance, "mu": mu, "H": fall, "g": G}, ["v_least", "angle_best"]))
         assert slid
-        assert found["v_least"] == pytest.approx(50, rel=1e-9)
-        assert found["angle_best"] == pytest.approx(math.degrees(math.atan(mu)))
+        assert result["v_least"] == pytest.approx(50, rel=1e-9)
+        assert result["angle_best"] == pytest.approx(math.degrees(math.atan(mu)))
 
 
 def test_without_the_fall_the_lower_bound_was_four_percent_too_high(cells):
-    found = cells("pedestrian-throw", {"s": 20, "mu": 0.66, "H": np.array([0, 2.3]), "g": G}, ["vmin_mph"])["vmin_mph"]
-    assert found[0] / found[1] == pytest.approx(1.040, abs=5e-4)
+    result = cells("pedestrian-throw", {"s": 20, "mu": 0.66, "H": np.array([0, 2.3]), "g": G}, ["vmin_mph"])["vmin_mph"]
+    assert result[0] / result[1] == pytest.approx(1.040, abs=5e-4)
 
 
 @SEEDS
@@ -187,12 +189,12 @@ def test_a_flight_over_an_edge(cells, seed):
     for _ in range(60):  # the speed from which braking leaves v
         before += v - braked_over(before, braking, f * G)[0] if before > v else 10.0
     given = {"d": x, "h": drop, "theta": slope, "f": f, "s": braking, "g": G}
-    found = one(cells("airborne", given, ["v", "v_1", "v_land", "landing_slope", "v_min"]))
-    assert found["v"] == pytest.approx(v, rel=1e-9)
-    assert found["v_1"] == pytest.approx(before, rel=1e-6)
-    assert found["v_land"] == pytest.approx(math.hypot(vx, vy), rel=1e-9)
-    assert found["landing_slope"] == pytest.approx(math.degrees(math.atan2(vy, vx)), rel=1e-9)
-    assert found["v_min"] <= v * (1 + 1e-12)
+    result = one(cells("airborne", given, ["v", "v_1", "v_land", "landing_slope", "v_min"]))
+    assert result["v"] == pytest.approx(v, rel=1e-9)
+    assert result["v_1"] == pytest.approx(before, rel=1e-6)
+    assert result["v_land"] == pytest.approx(math.hypot(vx, vy), rel=1e-9)
+    assert result["landing_slope"] == pytest.approx(math.degrees(math.atan2(vy, vx)), rel=1e-9)
+    assert result["v_min"] <= v * (1 + 1e-12)
 
 
 @pytest.mark.parametrize("brake_on", [0, 2, 4], ids="brake on in the last {} samples".format)
@@ -214,13 +216,13 @@ def test_a_record_of_a_vehicle_that_brakes(cells, seed, brake_on):
 
     given = {"v_last": recorded(0), "n_on": brake_on, "T_s": interval, "tau": tau, "f": f, "kappa": kappa, "g": G}
     given |= {"q": q, "bias": bias} | {f"v_{k}": recorded(k) for k in range(1, 6)}
-    found = one(cells("edr-speed", given, ["v_impact_s", "v_on_mph", "x_on", "checks_hold"]))
+    result = one(cells("edr-speed", given, ["v_impact_s", "v_on_mph", "x_on", "checks_hold"]))
     steps = np.linspace(begins if brake_on else times[0], 0, 20_001)
     middles = (steps[1:] + steps[:-1]) / 2
-    assert found["v_impact_s"] == pytest.approx(speed(0), rel=1e-9)
-    assert found["v_on_mph"] == pytest.approx(cruising * MPH, rel=1e-9)
-    assert found["x_on"] == pytest.approx(sum(map(speed, middles)) * (steps[1] - steps[0]), rel=1e-6)
-    assert found["checks_hold"] == 1
+    assert result["v_impact_s"] == pytest.approx(speed(0), rel=1e-9)
+    assert result["v_on_mph"] == pytest.approx(cruising * MPH, rel=1e-9)
+    assert result["x_on"] == pytest.approx(sum(map(speed, middles)) * (steps[1] - steps[0]), rel=1e-6)
+    assert result["checks_hold"] == 1
 
 
 @SEEDS
@@ -242,10 +244,10 @@ def test_a_video_of_a_vehicle_that_slows(cells, seed):
         "a": a,
         "g": G,
     }
-    found = one(cells("video-speed", given, ["v_mean", "v_first", "v_end"]))
-    assert found["v_mean"] == pytest.approx(distance / took, rel=1e-9)
-    assert found["v_first"] == pytest.approx(v, rel=1e-9)
-    assert found["v_end"] == pytest.approx(at_last, rel=1e-9)
+    result = one(cells("video-speed", given, ["v_mean", "v_first", "v_end"]))
+    assert result["v_mean"] == pytest.approx(distance / took, rel=1e-9)
+    assert result["v_first"] == pytest.approx(v, rel=1e-9)
+    assert result["v_end"] == pytest.approx(at_last, rel=1e-9)
 
 
 def approach(distance, v, response, b, until):
@@ -295,18 +297,18 @@ def test_a_driver_who_braked(cells, seed, limit):
     way, far = moved(u, a, time), rng.uniform(3, 15)
     given = {"v_impact": v_impact * MPH, "d_brake": braking, "braked": 1, "f": f, "u": u * MPH, "a_intruder": a / G}
     given |= {"d_intruder": way, "clearance": far, "limit": limit, "g": G}
-    found = one(cells("time-distance", given, [*TIMES, "t_clear", "t_arrive_same", "v_hit_same"]))
-    assert found["v_0"] == pytest.approx(v0, rel=1e-8)
-    assert found["t_response"] == pytest.approx(response, rel=1e-8)
-    assert found["D_0"] == pytest.approx(v0 * response + braking, rel=1e-8)
-    assert moved(u, a, found["t_clear"]) == pytest.approx(way + far, rel=1e-8)
+    result = one(cells("time-distance", given, [*TIMES, "t_clear", "t_arrive_same", "v_hit_same"]))
+    assert result["v_0"] == pytest.approx(v0, rel=1e-8)
+    assert result["t_response"] == pytest.approx(response, rel=1e-8)
+    assert result["D_0"] == pytest.approx(v0 * response + braking, rel=1e-8)
+    assert moved(u, a, result["t_clear"]) == pytest.approx(way + far, rel=1e-8)
     arrives, hits = approach(v0 * response + braking, limit / MPH, response, f * G, 60)
-    assert found["stops_same"] == math.isinf(arrives)
+    assert result["stops_same"] == math.isinf(arrives)
     if not math.isinf(arrives):
-        assert found["t_arrive_same"] == pytest.approx(arrives, rel=1e-7)
-        assert found["v_hit_same"] == pytest.approx(hits, rel=1e-4)
-    assert found["avoided_same"] == found["avoided_least"] == (arrives >= found["t_clear"])
-    assert found["t_beyond"] == pytest.approx(max(0.5 - response, response - 3), rel=1e-6)
+        assert result["t_arrive_same"] == pytest.approx(arrives, rel=1e-7)
+        assert result["v_hit_same"] == pytest.approx(hits, rel=1e-4)
+    assert result["avoided_same"] == result["avoided_least"] == (arrives >= result["t_clear"])
+    assert result["t_beyond"] == pytest.approx(max(0.5 - response, response - 3), rel=1e-6)
 
 
 @pytest.mark.parametrize("message", [(1, 0), (2, 0), (2, 60)], ids=["no marks", "did not", "did not, marks left over"])
@@ -320,17 +322,17 @@ def test_a_driver_who_never_braked(cells, seed, limit, message):
     braked, marks = message
     given = {"v_impact": v * MPH, "d_brake": marks, "braked": braked, "f": f, "u": u * MPH, "a_intruder": 0}
     given |= {"d_intruder": u * time, "clearance": far, "limit": limit, "g": G}
-    found = one(cells("time-distance", given, [*TIMES, "t_clear", "t_weighed", "t_usual"]))
-    assert found["did_brake"] == 0
-    assert found["v_0"] == pytest.approx(v)
-    assert found["t_response"] == pytest.approx(time)
-    assert found["t_beyond"] == 0
-    assert found["t_weighed"] == found["t_usual"]
+    result = one(cells("time-distance", given, [*TIMES, "t_clear", "t_weighed", "t_usual"]))
+    assert result["did_brake"] == 0
+    assert result["v_0"] == pytest.approx(v)
+    assert result["t_response"] == pytest.approx(time)
+    assert result["t_beyond"] == 0
+    assert result["t_weighed"] == result["t_usual"]
     responses = [time, *(time + rng.exponential(0.5, 8)), math.inf]
-    outcomes = [approach(v * time, limit / MPH, each, f * G, 120)[0] >= found["t_clear"] for each in responses]
-    assert found["avoided_same"] == outcomes[0]
-    assert found["avoided_least"] == outcomes[-1]
-    assert found["avoided_least"] <= min(outcomes) <= max(outcomes) <= found["avoided_same"]
+    outcomes = [approach(v * time, limit / MPH, each, f * G, 120)[0] >= result["t_clear"] for each in responses]
+    assert result["avoided_same"] == outcomes[0]
+    assert result["avoided_least"] == outcomes[-1]
+    assert result["avoided_least"] <= min(outcomes) <= max(outcomes) <= result["avoided_same"]
 
 
 def test_a_scene_without_braking_that_cannot_tell(cells):
@@ -339,10 +341,10 @@ def test_a_scene_without_braking_that_cannot_tell(cells):
     n = 20_000
     given = {"v_impact": rng.uniform(34, 36, n), "u": rng.uniform(4, 5, n) * MPH, "f": rng.uniform(0.55, 0.8, n)}
     given |= {"braked": 2, "a_intruder": 0, "d_intruder": 12, "clearance": 6, "limit": 25}
-    found = cells("time-distance", given, ["avoided_same", "avoided_least", "t_beyond"])
-    assert found["avoided_same"].all()
-    assert not found["avoided_least"].any()
-    assert not found["t_beyond"].any()
+    result = cells("time-distance", given, ["avoided_same", "avoided_least", "t_beyond"])
+    assert result["avoided_same"].all()
+    assert not result["avoided_least"].any()
+    assert not result["t_beyond"].any()
 
 
 @pytest.mark.parametrize("brakes", [True, False], ids=["braked", "not before the impact"])
@@ -361,16 +363,16 @@ def test_a_pedestrian(cells, seed, known, brakes):
     given |= {"efficiency": share, "walking": walking, "walked": walking * (response + braked_for), "limit": 30}
     given |= {"known": known, "s": distance if known == 2 else 0, "d_after": after if known == 1 else 0}
     wanted = ["v_i", "v_0", "t_response", "D_0", "stops", "stops_least", "vs_mph", "vt_mph", "checks_hold", "t_beyond"]
-    found = one(cells("pedestrian", given, wanted))
-    assert found["v_i"] == pytest.approx(v_impact, rel=1e-8)
-    assert found["v_0"] == pytest.approx(v0, rel=1e-8)
-    assert found["t_response"] == pytest.approx(response, rel=1e-8)
-    assert found["D_0"] == pytest.approx(v0 * response + before, rel=1e-8)
+    result = one(cells("pedestrian", given, wanted))
+    assert result["v_i"] == pytest.approx(v_impact, rel=1e-8)
+    assert result["v_0"] == pytest.approx(v0, rel=1e-8)
+    assert result["t_response"] == pytest.approx(response, rel=1e-8)
+    assert result["D_0"] == pytest.approx(v0 * response + before, rel=1e-8)
     arrives, _ = approach(v0 * response + before, 30 / MPH, response, f * G, 60)
-    assert found["stops"] == math.isinf(arrives)
-    assert found["stops_least"] == (found["stops"] if brakes else 0)
+    assert result["stops"] == math.isinf(arrives)
+    assert result["stops_least"] == (result["stops"] if brakes else 0)
     # What was not measured gives no answer, and not 0.
-    assert math.isnan(found["vs_mph"]) is (known == 2)
-    assert math.isnan(found["vt_mph"]) is (known == 1)
-    assert found["checks_hold"] == 1
-    assert found["t_beyond"] <= 0
+    assert math.isnan(result["vs_mph"]) is (known == 2)
+    assert math.isnan(result["vt_mph"]) is (known == 1)
+    assert result["checks_hold"] == 1
+    assert result["t_beyond"] <= 0

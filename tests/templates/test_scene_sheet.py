@@ -20,11 +20,11 @@ PLANS = [name for name in DRAWN if TEMPLATES[name].diagram.plan]
 
 def points(book):
     """Curve -> its points as the cells show them, (n, 2); the points are checked to stand in one block."""
-    cells, found = book.sheets["Scene"].cells, {}
+    cells, result = book.sheets["Scene"].cells, {}
     for row, column in cells:
         if column == 2 and isinstance(cells[row, 2].value, int | float):
-            found.setdefault(cells[row, 1].value, []).append((cells[row, 2].value, cells[row, 3].value))
-    return {name: np.array(rows) for name, rows in found.items()}
+            result.setdefault(cells[row, 1].value, []).append((cells[row, 2].value, cells[row, 3].value))
+    return {name: np.array(rows) for name, rows in result.items()}
 
 
 def test_the_templates_with_something_to_draw_are_drawn():

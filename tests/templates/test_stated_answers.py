@@ -25,5 +25,5 @@ BOUNDS = [
 @pytest.mark.parametrize("edition", ["", "-si"], ids=["US", "SI"])
 def test_forecast_of_template_says_what_it_is(template, name, role, kind, edition):
     model = load(f"templates/{template}{edition}.xlsx")
-    found = {each.name: each for each in model.forecasts}[name]
-    assert (found.role, found.kind) == (role, kind)
+    result = {each.name: each for each in model.forecasts}[name]
+    assert (result.role, result.kind) == (role, kind)

@@ -86,10 +86,10 @@ def test_a_straight_line_comes_back_from_tests_of_other_weights_and_widths(name,
     for row in tests:  # as fast as the same energy per width makes this weight
         row[2] *= np.sqrt(mean_weight / mean_width / (row[1] / row[-1]))
     book = entered(read(name), tests, {"line_2": 1})
-    found = values_of(book, ["b0_used_2", "b1_used_2", "line_sd_2", "lined_1", "check_tests"])
-    assert found[:2] == pytest.approx([b0, b1], rel=2e-4)
-    assert found[2] == pytest.approx(0, abs=1e-3)
-    assert found[3:] == [0, True]
+    result = values_of(book, ["b0_used_2", "b1_used_2", "line_sd_2", "lined_1", "check_tests"])
+    assert result[:2] == pytest.approx([b0, b1], rel=2e-4)
+    assert result[2] == pytest.approx(0, abs=1e-3)
+    assert result[3:] == [0, True]
 
 
 def test_the_line_is_that_of_least_squares(read):
@@ -97,11 +97,11 @@ def test_the_line_is_that_of_least_squares(read):
     speeds, depths = np.array([19.2, 25.3, 29.8, 35.4, 40.1]), np.array([9.0, 13.0, 17.5, 20.0, 24.0])
     tests = [(1, 3600, speed, *[depth] * 6, 64) for speed, depth in zip(speeds, depths, strict=True)]
     wanted = ["line_b0_1", "pass_1_5", "line_sd_1", "Sxx_1", "level_1"]
-    found = values_of(entered(read("crush-energy"), tests, {"line_1": 1}), wanted)
+    result = values_of(entered(read("crush-energy"), tests, {"line_1": 1}), wanted)
     slope, intercept = np.polyfit(depths, speeds, 1)
     rest = speeds - intercept - slope * depths
     around = np.sum((depths - depths.mean()) ** 2)
-    assert found == pytest.approx([intercept, slope, np.sqrt(rest @ rest / 3), around, speeds.mean()])
+    assert result == pytest.approx([intercept, slope, np.sqrt(rest @ rest / 3), around, speeds.mean()])
 
 
 @pytest.mark.parametrize("lined", [False, True], ids=["b0 given", "line"])
@@ -114,14 +114,14 @@ def test_the_next_sister_test_lies_in_the_range_as_often_as_it_says(lined, read)
     book = entered(read("crush-energy"), tests, {"b0_1": b0, "line_1": 1} if lined else {"b0_1": b0})
     varies = {Cell("Stiffness", FIRST_ROW + i, 4): speeds[:, i] for i in range(5)}
     names = ["level_1", "pass_1_5", "line_sd_1", "x_tests_1", "Sxx_1"] if lined else ["b1_tests_1", "b1_sd_1"]
-    found = computed_at(book, varies, names)
+    result = computed_at(book, varies, names)
     t_level, t_slope = (rng.standard_t(3 if lined else 4, (4_000, families)) for _ in range(2))
     if lined:
-        level, slope, around, mean, sum_of_squares = (found[name] for name in names)
+        level, slope, around, mean, sum_of_squares = (result[name] for name in names)
         slopes = slope + around / np.sqrt(sum_of_squares) * t_slope
         predicted = level + around * np.sqrt(1.2) * t_level + slopes * (20.0 - mean)
     else:
-        centre, deviation = (found[name] for name in names)
+        centre, deviation = (result[name] for name in names)
         predicted = b0 + 20.0 * (centre + deviation * np.sqrt(1.2) * t_level)
     low, high = np.quantile(predicted, [0.1, 0.9], axis=0)
     following = b0 + b1 * 20.0 + scatter * rng.standard_normal(families)

@@ -39,23 +39,23 @@ def test_the_speed_of_a_throw_on_a_grade_comes_back(name, g, carried, cells):
     ]
     s, slid = np.array([each for each, _ in thrown]), np.array([each for _, each in thrown])
     given = {"s": s + carried, "carried": carried, "angle": angle, "H": fall, "mu": mu, "grade": grade, "g": g}
-    found = cells(name, given, ["v_throw", "u_after", "v_least", "v_level"])
-    np.testing.assert_allclose(found["v_throw"], speed, rtol=1e-9)
-    np.testing.assert_array_equal(found["u_after"] >= 0, slid)
+    result = cells(name, given, ["v_throw", "u_after", "v_least", "v_level"])
+    np.testing.assert_allclose(result["v_throw"], speed, rtol=1e-9)
+    np.testing.assert_array_equal(result["u_after"] >= 0, slid)
     assert 20 < (~slid).sum() < n - 100
-    assert (found["v_least"][slid] <= speed[slid] * (1 + 1e-12)).all()
+    assert (result["v_least"][slid] <= speed[slid] * (1 + 1e-12)).all()
     level = cells(name, given | {"angle": 0.0}, ["v_throw"])["v_throw"]
-    np.testing.assert_allclose(found["v_level"], level, rtol=1e-9)
+    np.testing.assert_allclose(result["v_level"], level, rtol=1e-9)
 
 
 @pytest.mark.parametrize("share", [1.0, 0.9, 0.7])
 def test_the_vehicle_lost_what_the_body_gained(cells, share):
     """180 lb leave 3000 lb at a share of the speed that these have left: momentum is kept, thrown or marked."""
     given = {"angle": 15.0, "efficiency": share, "w_body": 180.0, "w_vehicle": 3000.0}
-    found = cells("pedestrian-throw", given, ["V_vehicle_mph", "v_throw"])
-    body = found["v_throw"].item()
+    result = cells("pedestrian-throw", given, ["V_vehicle_mph", "v_throw"])
+    body = result["v_throw"].item()
     before = (3000 * body / share + 180 * body) / 3000
-    assert found["V_vehicle_mph"].item() == pytest.approx(before * 3600 / 5280, rel=1e-9)
+    assert result["V_vehicle_mph"].item() == pytest.approx(before * 3600 / 5280, rel=1e-9)
     wanted = ["v_thrown", "v_marks", "v_projected", "b"]
     both = {symbol: value.item() for symbol, value in cells("pedestrian", given | {"d_after": 50.0}, wanted).items()}
     assert both["v_thrown"] == pytest.approx(both["v_projected"] * (1 / share + 0.06), rel=1e-9)

@@ -56,18 +56,18 @@ def test_a_left_turn_with_and_without_the_published_response_time(cells):
         "clearance": draws.uniform(11, 13),
     }
     wanted = ["v0_mph", "t_response", "D_0", "stops_same", "avoided_same", "stops_fresh"]
-    found = cells("time-distance", inputs | {"u": 0, "limit": 45, "t_fresh": 1.25, "g": 32.174}, wanted)
-    close_mean(found["v0_mph"], 53.454, 1e-3)
-    close_mean(found["t_response"], 1.7769, 1e-4)
-    close_mean(found["stops_same"], 0.0312, 1e-4)
-    close_mean(found["avoided_same"], 0.9075, 1e-4)
-    weights = np.where(found["t_response"] > 0, np.exp(-0.5 * ((found["t_response"] - 1.25) / 0.46) ** 2), 0)
+    result = cells("time-distance", inputs | {"u": 0, "limit": 45, "t_fresh": 1.25, "g": 32.174}, wanted)
+    close_mean(result["v0_mph"], 53.454, 1e-3)
+    close_mean(result["t_response"], 1.7769, 1e-4)
+    close_mean(result["stops_same"], 0.0312, 1e-4)
+    close_mean(result["avoided_same"], 0.9075, 1e-4)
+    weights = np.where(result["t_response"] > 0, np.exp(-0.5 * ((result["t_response"] - 1.25) / 0.46) ** 2), 0)
     close_mean(weights, 0.5467, 1e-4)
     for symbol, mean, digit in (("t_response", 1.6420, 1e-4), ("D_0", 188.70, 1e-2)):
-        close_mean(found[symbol], mean, digit, weights)
-    close_mean(found["stops_same"], 0.0087, 1e-4, weights)
-    close_mean(found["avoided_same"], 0.8940, 1e-4, weights)
-    assert np.average(found["stops_same"], weights=weights) < 0.01 < found["stops_fresh"].mean()
+        close_mean(result[symbol], mean, digit, weights)
+    close_mean(result["stops_same"], 0.0087, 1e-4, weights)
+    close_mean(result["avoided_same"], 0.8940, 1e-4, weights)
+    assert np.average(result["stops_same"], weights=weights) < 0.01 < result["stops_fresh"].mean()
 
 
 def test_a_fresh_response_time_answers_another_question(cells):
@@ -81,8 +81,8 @@ def test_a_fresh_response_time_answers_another_question(cells):
         "a_intruder": draws.cut_normal(0.2, 0.04, 0.1, 0.3),
         "t_fresh": draws.cut_normal(1.25, 0.46, 0.5, 3),
     }
-    found = cells("time-distance", inputs | {"u": 0, "limit": 45, "g": 32.174}, ["stops_fresh"])
-    close_mean(found["stops_fresh"], 0.68, 1e-2)
+    result = cells("time-distance", inputs | {"u": 0, "limit": 45, "g": 32.174}, ["stops_fresh"])
+    close_mean(result["stops_fresh"], 0.68, 1e-2)
 
 
 def test_the_flight_of_amy(cells):
@@ -95,13 +95,13 @@ def test_the_flight_of_amy(cells):
         "s": draws.around(32.7, 1),
         "g": 32.174,
     }
-    found = cells("airborne", inputs, ["v_mph", "v1_mph"])
-    close_mean(found["v_mph"], 42.55, 1e-2)
-    close_mean(found["v1_mph"], 47.46, 1e-2)
-    assert found["v_mph"].std() == pytest.approx(2.52, abs=4 * 2.52 / np.sqrt(2 * N) + 5e-3)
-    assert found["v1_mph"].std() == pytest.approx(2.29, abs=4 * 2.29 / np.sqrt(2 * N) + 5e-3)
-    close_quantile(found["v_mph"], 0.025, 38.50, 1e-2)
-    close_quantile(found["v_mph"], 0.975, 47.53, 1e-2)
+    result = cells("airborne", inputs, ["v_mph", "v1_mph"])
+    close_mean(result["v_mph"], 42.55, 1e-2)
+    close_mean(result["v1_mph"], 47.46, 1e-2)
+    assert result["v_mph"].std() == pytest.approx(2.52, abs=4 * 2.52 / np.sqrt(2 * N) + 5e-3)
+    assert result["v1_mph"].std() == pytest.approx(2.29, abs=4 * 2.29 / np.sqrt(2 * N) + 5e-3)
+    close_quantile(result["v_mph"], 0.025, 38.50, 1e-2)
+    close_quantile(result["v_mph"], 0.975, 47.53, 1e-2)
 
 
 def test_a_recorded_speed_under_hard_braking(cells):
@@ -115,12 +115,12 @@ def test_a_recorded_speed_under_hard_braking(cells):
         "n_on": 3,
         "g": 32.174,
     }
-    found = cells("edr-speed", inputs, ["t_0", "vi_mph"])
-    close_mean(found["t_0"], 46.03, 1e-2)
-    close_mean(found["vi_mph"], 42.19, 1e-2)
-    assert found["vi_mph"].std() == pytest.approx(2.72, abs=4 * 2.72 / np.sqrt(2 * N) + 5e-3)
-    close_quantile(found["vi_mph"], 0.025, 37.10, 1e-2)
-    close_quantile(found["vi_mph"], 0.975, 47.33, 1e-2)
+    result = cells("edr-speed", inputs, ["t_0", "vi_mph"])
+    close_mean(result["t_0"], 46.03, 1e-2)
+    close_mean(result["vi_mph"], 42.19, 1e-2)
+    assert result["vi_mph"].std() == pytest.approx(2.72, abs=4 * 2.72 / np.sqrt(2 * N) + 5e-3)
+    close_quantile(result["vi_mph"], 0.025, 37.10, 1e-2)
+    close_quantile(result["vi_mph"], 0.975, 47.33, 1e-2)
 
 
 @pytest.mark.parametrize(
@@ -165,11 +165,11 @@ def test_near_head_on_energy_answers_and_momentum_does_not(cells):
         "R_1": 2.4,
         "R_2": 2.795,
     }
-    found = cells("momentum-energy-si", both | energy, ["V1_kmh", "V2_kmh"])
+    result = cells("momentum-energy-si", both | energy, ["V1_kmh", "V2_kmh"])
     for symbol, mean, deviation in (("V1_kmh", 70.76, 2.79), ("V2_kmh", 71.04, 2.82)):
-        close_mean(found[symbol], mean, 1e-2)
-        assert found[symbol].std() == pytest.approx(deviation, abs=4 * deviation / np.sqrt(2 * N) + 5e-3)
-    assert np.corrcoef(found["V1_kmh"], found["V2_kmh"])[0, 1] == pytest.approx(0.05, abs=4 / np.sqrt(N) + 5e-3)
+        close_mean(result[symbol], mean, 1e-2)
+        assert result[symbol].std() == pytest.approx(deviation, abs=4 * deviation / np.sqrt(2 * N) + 5e-3)
+    assert np.corrcoef(result["V1_kmh"], result["V2_kmh"])[0, 1] == pytest.approx(0.05, abs=4 / np.sqrt(N) + 5e-3)
     blind = cells("momentum-si", both | {"alpha_2": draws.around(183.9, 3)}, ["V1_kmh"])["V1_kmh"]
     close_quantile(blind, 0.025, -817, 1)
     close_quantile(blind, 0.975, 1036, 1)
@@ -196,12 +196,12 @@ def test_momentum_and_momentum_with_energy_agree_where_both_answer(cells):
     given = {symbol: values for symbol, values in scene.items() if symbol != "alpha_2"}
     ees = np.sqrt(2 * np.maximum(truth["E_lost"], 0) / (scene["m_1"] + scene["m_2"])) * KMH
     given |= {"EES_1": ees, "EES_2": ees, "phi_1": 0, "phi_2": 0}
-    found = cells("momentum-energy-si", given, ["V1_i", "V2_i", "alpha_2", "dV_1", "PDOF_2", "reach", "root"])
+    result = cells("momentum-energy-si", given, ["V1_i", "V2_i", "alpha_2", "dV_1", "PDOF_2", "reach", "root"])
     # The root is the one that answers where vehicle 2 closed in along the approach of vehicle 1.
     closing = truth["V1_i"] - truth["V2_i"] * np.cos(np.radians(scene["alpha_2"] - scene["alpha_1"]))
     usable = (truth["E_lost"] > 0) & (truth["V1_i"] > 0) & (truth["V2_i"] > 0) & (closing > 1)
     assert usable.sum() > 200
     for symbol in ("V1_i", "V2_i", "dV_1", "PDOF_2"):
-        np.testing.assert_allclose(found[symbol][usable], truth[symbol][usable], rtol=1e-9, atol=1e-9, err_msg=symbol)
-    turned = (found["alpha_2"] - scene["alpha_2"] + 180) % 360 - 180
+        np.testing.assert_allclose(result[symbol][usable], truth[symbol][usable], rtol=1e-9, atol=1e-9, err_msg=symbol)
+    turned = (result["alpha_2"] - scene["alpha_2"] + 180) % 360 - 180
     np.testing.assert_allclose(turned[usable], 0, atol=1e-8)

@@ -351,14 +351,14 @@ EXAMPLES = [
 
 @pytest.mark.parametrize(("template", "inputs", "expected", "tolerance"), EXAMPLES)
 def test_worked_example(template, inputs, expected, tolerance, cells):
-    found = cells(template, inputs, list(expected))
+    result = cells(template, inputs, list(expected))
     for symbol, value in expected.items():
-        assert found[symbol].item() == pytest.approx(value, abs=tolerance), symbol
+        assert result[symbol].item() == pytest.approx(value, abs=tolerance), symbol
 
 
 def test_the_shortcut_by_mean_crush_is_ten_percent_low(cells):
-    found = cells("crush-energy", WEDGE, ["E_1", "shortcut_1"])
-    assert found["shortcut_1"].item() / found["E_1"].item() == pytest.approx(0.9, abs=0.005)
+    result = cells("crush-energy", WEDGE, ["E_1", "shortcut_1"])
+    assert result["shortcut_1"].item() / result["E_1"].item() == pytest.approx(0.9, abs=0.005)
 
 
 def test_delta_v_closes_the_energy_balance(cells):
@@ -415,10 +415,10 @@ BOOKS = {
 
 @pytest.mark.parametrize("name", BOOKS)
 def test_example_book_shows_the_published_figures(name, shown):
-    found = shown(name)
+    result = shown(name)
     for symbol, (value, tolerance) in BOOKS[name].items():
-        assert found[symbol] == pytest.approx(value, abs=tolerance), symbol
-    assert found["checks_hold"] is (name not in ("textbook-claim", "video-two-frames", "motorcycle-head-on"))
+        assert result[symbol] == pytest.approx(value, abs=tolerance), symbol
+    assert result["checks_hold"] is (name not in ("textbook-claim", "video-two-frames", "motorcycle-head-on"))
 
 
 @pytest.mark.parametrize("name", BOOKS)
@@ -465,9 +465,9 @@ def test_the_case_study_by_momentum_has_the_unfiltered_moments(book_path):
     """200,000 trials: within four standard errors, and half a unit of the last digit of the reference."""
     model, n = load(book_path["intersection-momentum"]), 200_000
     rng = np.random.default_rng(6)
-    found = model.function({a.name: rng.uniform(a.parameters["low"], a.parameters["high"], n) for a in model.live})
+    result = model.function({a.name: rng.uniform(a.parameters["low"], a.parameters["high"], n) for a in model.live})
     for name, (mean, deviation) in UNFILTERED.items():
-        x = found[name]
+        x = result[name]
         fourth = np.mean((x - x.mean()) ** 4)
         assert abs(x.mean() - mean) < 4 * deviation / n**0.5 + 5e-5, name
         assert abs(x.std() - deviation) < 4 * ((fourth - deviation**4) / n) ** 0.5 / (2 * deviation) + 5e-5, name

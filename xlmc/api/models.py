@@ -189,17 +189,17 @@ class Model:
 
         settings = {name: value for name, value in named.items() if name in _SETTINGS}
         by_name = {**(changes or {}), **{name: value for name, value in named.items() if name not in _SETTINGS}}
-        found: list[Change] = []
+        result: list[Change] = []
         for name, value in by_name.items():
             assumption = assumption_named(self._compiled, name)
             if isinstance(value, Distribution):
-                found.append(Redrawn(assumption, value))
+                result.append(Redrawn(assumption, value))
             elif isinstance(value, Real) and not isinstance(value, bool):
-                found.append(Frozen(assumption, float(value)))
+                result.append(Frozen(assumption, float(value)))
             else:
                 hint = "Give a distribution, such as xlmc.Uniform(0.6, 0.8), or a number to hold it at"
                 raise SimulationError(f"{name!r} cannot be {value!r}", hint=hint)
-        changed = self._with(Scenario("changed in Python", tuple(found))) if found else self
+        changed = self._with(Scenario("changed in Python", tuple(result))) if result else self
         if not settings:
             return changed
         compiled = changed._compiled

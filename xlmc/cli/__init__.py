@@ -187,12 +187,12 @@ def show_help(context: click.Context, command: str | None) -> None:
     if command is None:
         say(group.get_help())
         return
-    found = xlmc.get_command(group, command)
-    if found is None:
+    result = xlmc.get_command(group, command)
+    if result is None:
         near = did_you_mean(command, xlmc.list_commands(group))
         raise click.UsageError(f"there is no command {command!r}.{near}")
-    with click.Context(found, info_name=command, parent=group) as inner:
-        say(found.get_help(inner))
+    with click.Context(result, info_name=command, parent=group) as inner:
+        say(result.get_help(inner))
 
 
 xlmc.add_command(show_help)

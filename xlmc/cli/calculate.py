@@ -96,8 +96,8 @@ def calculate(
     calculator = Calculator(workbook, {*typed, *(() if table is None else table.rows[0])}, volatile=volatile)
     copies = any(path.suffix.casefold() not in _TABLES for path in outputs)
     only = None if copies or table is None else frozenset(wanted)
-    found = [calculator.calculate(row, only) for row in rows]
-    answers = _Answers(workbook, wanted, table, rows, found)
+    calculations = [calculator.calculate(row, only) for row in rows]
+    answers = _Answers(workbook, wanted, table, rows, calculations)
     for path in outputs:
         _write(path, answers, read, overwrite)
     _print(answers, as_json=as_json, as_csv=as_csv)
@@ -114,15 +114,15 @@ class _Answers:
     wanted: Sequence[Cell]
     table: ValueRows | None
     typed: Sequence[Mapping[Cell, CellValue]]
-    found: Sequence[Calculation]
+    calculations: Sequence[Calculation]
 
     def value(self, cell: Cell, row: int) -> CellValue:
         """Return the value of a cell in a row."""
         if cell in self.typed[row]:
             return self.typed[row][cell]
-        if cell in self.found[row].unknown:
+        if cell in self.calculations[row].unknown:
             return None
-        return self.found[row].values.get(cell, self.book.content(cell).value)
+        return self.calculations[row].values.get(cell, self.book.content(cell).value)
 
     def lines(self) -> Iterator[list[CellValue]]:
         """Yield the lines of a table: each cell with its value, or each row with the values of all cells."""
@@ -171,30 +171,30 @@ class _Answers:
 
     def lacking(self) -> Iterator[Cell]:
         """Yield the cells without a value: of the whole book, or of the wanted cells with rows of values."""
-        for each in self.found:
+        for each in self.calculations:
             yield from (cell for cell in each.unknown if self.table is None or not self.wanted or cell in self.wanted)
 
 
 def _typed(changes: Iterable[tuple[Cell, CellValue]]) -> dict[Cell, CellValue]:
-    found: dict[Cell, CellValue] = {}
+    result: dict[Cell, CellValue] = {}
     for cell, value in changes:
-        if cell in found:
+        if cell in result:
             raise click.UsageError(f"{cell} is set twice.")
-        found[cell] = value
-    return found
+        result[cell] = value
+    return result
 
 
 def _wanted(book: Workbook, places: Iterable[str]) -> list[Cell]:
     from xlmc.errors import WorkbookError
     from xlmc.excel.workbook.places import area_named
 
-    found: dict[Cell, None] = {}
+    result: dict[Cell, None] = {}
     for place in places:
         try:
-            found |= dict.fromkeys(area_named(book, place).cells())
+            result |= dict.fromkeys(area_named(book, place).cells())
         except KeyError as error:
             raise WorkbookError(f"--cells {place}: {error.args[0]}") from None
-    return list(found)
+    return list(result)
 
 
 def _check(
@@ -242,8 +242,8 @@ def _write(path: Path, answers: _Answers, read: Sequence[Path], overwrite: bool)
         case ".json":
             data = (json.dumps(answers.as_json(), indent=2, ensure_ascii=False) + "\n").encode("utf-8")
         case _:
-            (found,), (typed,) = answers.found, answers.typed
-            data = copy_with_values(answers.book, typed, found.values, found.unknown)
+            (calculation,), (typed,) = answers.calculations, answers.typed
+            data = copy_with_values(answers.book, typed, calculation.values, calculation.unknown)
     write_workbook(path, data, Target(path, "", overwrite, read=read).check)
 
 
@@ -263,7 +263,7 @@ def _tell(answers: _Answers, book: Path, outputs: Sequence[Path]) -> None:
     """Say what was computed, to stderr where the values were printed for a program."""
     from xlmc.montecarlo.number_text import count_text
 
-    first, only = answers.found[0], len(answers.found) == 1
+    first, only = answers.calculations[0], len(answers.calculations) == 1
     if only and not answers.wanted:
         new, lost = len(first.values), len(first.unknown)
         parts = [
@@ -276,19 +276,19 @@ def _tell(answers: _Answers, book: Path, outputs: Sequence[Path]) -> None:
     for path in outputs:
         say(f"Written: {path}", err=bool(answers.wanted))
     by_reason: dict[tuple[str, str], list[Cell]] = {}
-    for each in answers.found:
-        for said, cells in (("has no value", each.unknown), ("keeps the saved value", each.kept)):
+    for each in answers.calculations:
+        for message, cells in (("has no value", each.unknown), ("keeps the saved value", each.kept)):
             for cell, why in cells.items():
-                listed = by_reason.setdefault((said, _reason(answers.book, cell, why)), [])
+                listed = by_reason.setdefault((message, _reason(answers.book, cell, why)), [])
                 if cell not in listed:
                     listed.append(cell)
-    for (said, why), listed in by_reason.items():
+    for (message, why), listed in by_reason.items():
         shown = ", ".join(map(str, listed[:_MOST_TOLD]))
         more = f" and {count_text(len(listed) - _MOST_TOLD)} more" if len(listed) > _MOST_TOLD else ""
         if len(listed) > 1:
-            said = said.replace("has", "have").replace("keeps", "keep")
+            message = message.replace("has", "have").replace("keeps", "keep")
         who = "it" if len(listed) == 1 else "they"
-        say(f"note: {shown}{more}: {capitalised(why)}; {who} {said}.", err=True)
+        say(f"note: {shown}{more}: {capitalised(why)}; {who} {message}.", err=True)
 
 
 def _reason(book: Workbook, cell: Cell, why: str) -> str:

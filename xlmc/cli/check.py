@@ -225,8 +225,8 @@ def _drawn_with(model: CompiledModel | None, correlation: Correlation) -> str:
     from xlmc.montecarlo.model.correlating import drawn_correlation
     from xlmc.montecarlo.number_text import number_text
 
-    found = None if model is None else drawn_correlation(model.groups, correlation.first, correlation.second)
-    return "-" if found is None else number_text(found, 3)
+    value = None if model is None else drawn_correlation(model.groups, correlation.first, correlation.second)
+    return "-" if value is None else number_text(value, 3)
 
 
 def _show_need(model: CompiledModel, workbook: Workbook) -> None:
@@ -280,7 +280,7 @@ def check_table(run: RunResult) -> None:
     if all(check.holds and not check.failed for check in run.checks):
         say(paragraph(f"{checks_sentence(run.checks)}.") + "\n")
         return
-    rows = [(check.name, check.base.found or "", count_text(check.failed), _share(check)) for check in run.checks]
+    rows = [(check.name, check.base.content or "", count_text(check.failed), _share(check)) for check in run.checks]
     title = f"Checks, in {run.checks[0].looked_at}"
     table(title, ("Check", "Base case", "Failing", "Share"), rows, right=(2, 3))
 

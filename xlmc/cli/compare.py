@@ -76,7 +76,7 @@ def compare(
     use_number_style(books[0].definitions.settings.number_style)
     files = output.files(first, second, functions=functions)
     with step_line() as tell:
-        found = comparison.compare(
+        result = comparison.compare(
             *books,
             tolerance,
             chance=chance,
@@ -89,15 +89,15 @@ def compare(
             causes=not no_causes,
             tell=tell,
         )
-    report = compare_report(found)
+    report = compare_report(result)
     written = output.give(report, files)
-    runs = list(zip(book_names(found), (found.first, found.second), strict=True))
+    runs = list(zip(book_names(result), (result.first, result.second), strict=True))
     notices([replace(notice, where=name) for name, run in runs for notice in direction_notices(run.results.values())])
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]
     warnings(doubts, [f"{name}: {warning}" for name, run in runs for warning in run.refused])
     written.check()
-    end_early(found.ended)
-    if doubts or found.of(comparison.Verdict.UNDECIDED) or any(_contradict(each) for each in found.rivals):
+    end_early(result.ended)
+    if doubts or result.of(comparison.Verdict.UNDECIDED) or any(_contradict(each) for each in result.rivals):
         raise click.exceptions.Exit(UNDECIDED)
 
 
@@ -113,12 +113,12 @@ def _pairs(given: tuple[str, ...], option: str, form: str) -> dict[str, str]:
     Raises:
         UsageError: a pair is not written as one, or a name is in two.
     """
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for text in given:
         mine, equals, theirs = (part.strip() for part in text.partition("="))
         if not (mine and equals and theirs):
             raise click.UsageError(f"{option} {text!r} must be written '{form}'.")
-        if mine in found or theirs in found.values():
+        if mine in result or theirs in result.values():
             raise click.UsageError(f"{option} {text!r} has a name that another {option} has.")
-        found[mine] = theirs
-    return found
+        result[mine] = theirs
+    return result

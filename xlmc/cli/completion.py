@@ -21,6 +21,6 @@ def completion(context: click.Context, shell: str) -> None:
     """
     from click.shell_completion import get_completion_class
 
-    found = get_completion_class(shell)
-    assert found is not None  # the shells are those that click knows
-    put(found(context.find_root().command, {}, "xlmc", "_XLMC_COMPLETE").source() + "\n")
+    result = get_completion_class(shell)
+    assert result is not None  # the shells are those that click knows
+    put(result(context.find_root().command, {}, "xlmc", "_XLMC_COMPLETE").source() + "\n")

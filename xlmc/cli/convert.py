@@ -47,14 +47,14 @@ def convert(
     check_ending(path, book)
     model = load(book, functions=functions)
     use_number_style(model.definitions.settings.number_style)
-    found = write(model, path, overwrite=overwrite)
+    converted = write(model, path, overwrite=overwrite)
     notices(model.notices)
     counts: dict[str, int] = {}
-    for each in found.tables:
+    for each in converted.tables:
         counts[each.kind] = counts.get(each.kind, 0) + len(each.rows)
     table("Written into tables", ("Table", "Rows"), [(kind, str(rows)) for kind, rows in counts.items()], right=(1,))
-    if found.left:
-        rows = [(each.stood_in, each.name, each.why) for each in found.left]
+    if converted.left:
+        rows = [(each.stood_in, each.name, each.why) for each in converted.left]
         table("Not converted, in red on the sheet", ("Cell", "Name", "Stands in"), rows)
     say(
         paragraph(f"{path} gives the same accepted trials as {book}. Look at its last sheet, and run xlmc check on it.")

@@ -43,21 +43,21 @@ def decide(
 
     model, files = output.open(book, functions, of_run=True)
     with step_line() as tell:
-        found = study.decide(model, table, **run, tell=tell)
-    report = decide_report(found)
+        result = study.decide(model, table, **run, tell=tell)
+    report = decide_report(result)
     written = output.give(report, files)
-    conclude(written, found.run, _doubts(found), found.ended)
+    conclude(written, result.run, _doubts(result), result.ended)
 
 
-def _doubts(found: Decided) -> list[str]:
+def _doubts(result: Decided) -> list[str]:
     """Return why the answers of combinations must not be used."""
     from xlmc.analysis.studies.decisions import values_text
 
-    doubts = [f"{each.answers.name}: {warning}" for each in found.combinations for warning in each.answers.warnings]
+    doubts = [f"{each.answers.name}: {warning}" for each in result.combinations for warning in each.answers.warnings]
     return [
         *doubts,
         *(
-            f"{values_text(found.decisions, each)}: not possible: {why.rstrip('.')}"
-            for each, why in found.impossible.items()
+            f"{values_text(result.decisions, each)}: not possible: {why.rstrip('.')}"
+            for each, why in result.impossible.items()
         ),
     ]

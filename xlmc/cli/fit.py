@@ -124,21 +124,21 @@ def fit(
     sources = [book] if into is None else [book, into]
     files = output.files(*sources)
     values, where, blank, pooled = _values(book, reference)
-    found = fitting.fit(values, kind=kind, by=by)
-    found = replace(found, cautions=(*pooled, *found.cautions))
-    described = f"fitted by maximum likelihood to {book.name} {where}, n = {found.n}"
-    chosen = _chosen(found, distribution)
+    result = fitting.fit(values, kind=kind, by=by)
+    result = replace(result, cautions=(*pooled, *result.cautions))
+    described = f"fitted by maximum likelihood to {book.name} {where}, n = {result.n}"
+    chosen = _chosen(result, distribution)
     row = fitting.row_to_paste(chosen, name or "…", described)
     edited = None if into is None else fit_into.prepare(into, name, chosen, float(np.median(values)), described)
-    as_json_of = partial(_as_json, found, f"{book} {where}", blank, row)
-    report = _report(found, values, f"{book.name} {where}", blank, row, as_json_of)
+    as_json_of = partial(_as_json, result, f"{book} {where}", blank, row)
+    report = _report(result, values, f"{book.name} {where}", blank, row, as_json_of)
     written = write_files(files.writers(report))
     into = None if edited is None else written_or_reported(edited.path, partial(fit_into.write, edited))
     if output.as_json:
         say_json(report.json())
     else:
-        said = blocks_of(_cautions(found))  # as warnings, below
-        show([each for each in report.blocks[:-1] if each not in said])
+        messages = blocks_of(_cautions(result))  # as warnings, below
+        show([each for each in report.blocks[:-1] if each not in messages])
         say(f"\n{chosen.name} as a row of xlmc_assumptions, to paste under these headings:\n")
         say("\t".join(row))
         say("\t".join(row.values()))
@@ -146,12 +146,12 @@ def fit(
             done = "a new row" if edited.row.is_new else "its row"
             say(f"Written: {chosen.name} for {label(name)}, {done} in {into}, {edited.row.where}")
         written.print_paths()
-    for caution in _cautions(found):
+    for caution in _cautions(result):
         say(f"warning: {caution}", err=True)
     written.check()
     if edited is not None and into is None:
         raise click.exceptions.Exit(NOT_WRITTEN)
-    if found.n < fitting.FEW:
+    if result.n < fitting.FEW:
         raise click.exceptions.Exit(TOO_FEW)
 
 
@@ -176,7 +176,7 @@ def _copy_tests(source: str, cells: str | None, vehicle: int, into: Path | None,
         say(f"  {name:<12} {number_text(value)}")
 
 
-def _chosen(found: Fitting, distribution: str | None) -> Fitted:
+def _chosen(fitting: Fitting, distribution: str | None) -> Fitted:
     """Return the distribution that the row is to have.
 
     Raises:
@@ -186,12 +186,12 @@ def _chosen(found: Fitting, distribution: str | None) -> Fitted:
     from xlmc.montecarlo.distributions import family_named
 
     if distribution is None:
-        return found.fits[0]
+        return fitting.fits[0]
     name = family_named(distribution).name
-    for fitted in found.fits:
+    for fitted in fitting.fits:
         if fitted.name == name:
             return fitted
-    why = found.unfit.get(name, f"{found.kind} values are not fitted with it")
+    why = fitting.unfit.get(name, f"{fitting.kind} values are not fitted with it")
     raise click.UsageError(f"{name} was not fitted: {why}.")
 
 
@@ -255,16 +255,16 @@ def _pooled(area: Area, rows: Sequence[Sequence[object]]) -> tuple[str, ...]:
     )
 
 
-def _as_json(found: Fitting, source: str, blank: int, row: dict[str, str]) -> dict[str, object]:
+def _as_json(fitting: Fitting, source: str, blank: int, row: dict[str, str]) -> dict[str, object]:
     return {
         "source": source,
-        "values": found.n,
+        "values": fitting.n,
         "blank_cells": blank,
-        "kind": found.kind,
-        "ranked_by": found.by,
-        "fits": [_entry(fitted) for fitted in found.fits],
-        "not_fitted": dict(found.unfit),
-        "cautions": list(found.cautions),
+        "kind": fitting.kind,
+        "ranked_by": fitting.by,
+        "fits": [_entry(fitted) for fitted in fitting.fits],
+        "not_fitted": dict(fitting.unfit),
+        "cautions": list(fitting.cautions),
         "row": row,
     }
 
@@ -287,7 +287,7 @@ def _entry(fitted: Fitted) -> dict[str, object]:
 
 
 def _report(
-    found: Fitting,
+    fitting: Fitting,
     values: list[float],
     source: str,
     blank: int,
@@ -300,26 +300,33 @@ def _report(
     from xlmc.outputs.study_report import StudyReport
 
     as_row = Table(f"{row['Distribution']} as a row of xlmc_assumptions", tuple(row), (tuple(row.values()),))
-    below = f"{source}: {count_text(found.n)} values"
-    verdict = f"{found.fits[0].name} describes the {count_text(found.n)} values best by {found.by.upper()}."
-    blocks: list[str | Block] = [verdict, *_cautions(found), _ranking(found, source, blank), _curves(found, values)]
-    blocks += [f"Not fitted: {name}: {reason}." for name, reason in found.unfit.items()]
-    blocks += [f"Standard errors of {', '.join(names)}: {source}." for source, names in _sources(found).items()]
+    below = f"{source}: {count_text(fitting.n)} values"
+    verdict = f"{fitting.fits[0].name} describes the {count_text(fitting.n)} values best by {fitting.by.upper()}."
+    blocks: list[str | Block] = [
+        verdict,
+        *_cautions(fitting),
+        _ranking(fitting, source, blank),
+        _curves(fitting, values),
+    ]
+    blocks += [f"Not fitted: {name}: {reason}." for name, reason in fitting.unfit.items()]
+    blocks += [f"Standard errors of {', '.join(names)}: {source}." for source, names in _sources(fitting).items()]
     title = "Distributions fitted to measurements"
     return StudyReport(title, below, blocks_of([*blocks, _MEANING, as_row]), "Fit", as_json)
 
 
-def _cautions(found: Fitting) -> list[str]:
-    return [f"{caution}." for caution in found.cautions]
+def _cautions(fitting: Fitting) -> list[str]:
+    return [f"{caution}." for caution in fitting.cautions]
 
 
-def _ranking(found: Fitting, source: str, blank: int) -> Table:
+def _ranking(fitting: Fitting, source: str, blank: int) -> Table:
     from xlmc.montecarlo.number_text import count_text, fixed_text
     from xlmc.outputs.document.parts import Table
 
     left_out = f"; {count_text(blank)} blank cells left out" if blank else ""
-    title = f"{source}: {count_text(found.n)} values as {found.kind}{left_out}; the best by {found.by.upper()} first"
-    best = min(fitted.aic for fitted in found.fits)
+    title = (
+        f"{source}: {count_text(fitting.n)} values as {fitting.kind}{left_out}; the best by {fitting.by.upper()} first"
+    )
+    best = min(fitted.aic for fitted in fitting.fits)
     rows = tuple(
         (
             fitted.name,
@@ -330,13 +337,13 @@ def _ranking(found: Fitting, source: str, blank: int) -> Table:
             _statistic(fitted.ad),
             _statistic(fitted.ks),
         )
-        for fitted in found.fits
+        for fitted in fitting.fits
     )
     headings = ("Distribution", "Parameters ± standard error", "ΔAIC", "AIC", "BIC", "A²", "D")
     return Table(title, headings, rows, (2, 3, 4, 5, 6))
 
 
-def _curves(found: Fitting, values: list[float]) -> Figure:
+def _curves(fitting: Fitting, values: list[float]) -> Figure:
     """Return the values and the families that describe them best, as shares at most."""
     import numpy as np
 
@@ -348,17 +355,17 @@ def _curves(found: Fitting, values: list[float]) -> Figure:
     x, own = ranked[shown], (shown + 1) / ranked.size
     margin = _BESIDE * (x[-1] - x[0])
     at = np.linspace(x[0] - margin, x[-1] + margin, _POINTS)
-    if found.kind == "counts":
+    if fitting.kind == "counts":
         at = np.unique(np.maximum(np.floor(np.linspace(x[0] - margin, x[-1] + margin + 1.0, 4 * _POINTS)), 0.0))
     lines = [Line("Values", _staircase(np.append(x, at[-1]), np.append(own, 1.0)))]
-    for fitted in found.fits[:_DRAWN]:
+    for fitted in fitting.fits[:_DRAWN]:
         shares = share_at_most(fitted, at)
-        points = _staircase(at, shares) if found.kind == "counts" else zip(at.tolist(), shares.tolist(), strict=True)
+        points = _staircase(at, shares) if fitting.kind == "counts" else zip(at.tolist(), shares.tolist(), strict=True)
         lines.append(Line(fitted.name, tuple(points)))
     title = f"The values and the {len(lines) - 1} distributions that describe them best"
-    said = f"{title}: {', '.join(line.name for line in lines)}"
+    message = f"{title}: {', '.join(line.name for line in lines)}"
     data = Lines(tuple(lines), "Share at most", share=True)
-    return Figure(Chart("", "Value", data, said), f"{title}.")
+    return Figure(Chart("", "Value", data, message), f"{title}.")
 
 
 def _staircase(x: Any, shares: Any) -> tuple[tuple[float, float], ...]:
@@ -399,8 +406,8 @@ def _statistic(value: float | None) -> str:
     return "–" if value is None else "∞" if math.isinf(value) else styled_text(value, ".3f")
 
 
-def _sources(found: Fitting) -> dict[str, list[str]]:
+def _sources(fitting: Fitting) -> dict[str, list[str]]:
     sources: dict[str, list[str]] = {}
-    for fitted in found.fits:
+    for fitted in fitting.fits:
         sources.setdefault(fitted.errors_from, []).append(fitted.name)
     return sources

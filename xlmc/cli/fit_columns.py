@@ -59,19 +59,19 @@ def fit_columns(
     from xlmc.analysis.studies.fitting.columns import fit_columns as study
 
     book = None if into is None else _book(into)
-    found = study(columns, kind=kind, by=by, bootstraps=BOOTSTRAPS if uncertain else 0)
-    report = _report(found, source)
-    data = None if into is None else _data(book, found, source)
+    fits = study(columns, kind=kind, by=by, bootstraps=BOOTSTRAPS if uncertain else 0)
+    report = _report(fits, source)
+    data = None if into is None else _data(book, fits, source)
     written = output.give(report, files)
     if into is not None and data is not None:
         _write(into, data, "" if book is None else book.sha256)
         if not output.as_json:
-            rows = sum(each.best is not None for each in found.columns)
-            say(f"Written: {rows} distributions and {len(found.pairs)} rank correlations on a sheet of {into}")
-    for caution in _cautions(found):
+            rows = sum(each.best is not None for each in fits.columns)
+            say(f"Written: {rows} distributions and {len(fits.pairs)} rank correlations on a sheet of {into}")
+    for caution in _cautions(fits):
         say(f"warning: {caution}", err=True)
     written.check()
-    if any(each.fitting is not None and each.fitting.n < fitting.FEW for each in found.columns):
+    if any(each.fitting is not None and each.fitting.n < fitting.FEW for each in fits.columns):
         raise click.exceptions.Exit(1)
 
 
@@ -90,7 +90,7 @@ def _book(path: Path) -> Workbook | None:
     return book
 
 
-def _data(book: Workbook | None, found: Fits, source: str) -> bytes:
+def _data(book: Workbook | None, fits: Fits, source: str) -> bytes:
     """Return the workbook with the sheet.
 
     Raises:
@@ -100,7 +100,7 @@ def _data(book: Workbook | None, found: Fits, source: str) -> bytes:
     from xlmc.excel.workbook.reader import read_workbook
     from xlmc.outputs.prepared.fitted_sheet import with_fits
 
-    data = with_fits(book, found, source)
+    data = with_fits(book, fits, source)
     if book is not None:
         refuse_new_problems(book, read_workbook(data, book.name))
     return data
@@ -139,15 +139,15 @@ def columns_of_csv(path: Path, wanted: str | None) -> dict[str, list[float | str
         if len(cells) > len(heads):
             message = f"line {number} has {len(cells)} cells, and there are {len(heads)} headings"
             raise WorkbookError(message, where=path, hint="Put texts with commas in quotation marks")
-    found: dict[str, list[float | str | None]] = {}
+    result: dict[str, list[float | str | None]] = {}
     for at, head in enumerate(heads):
         texts = [cells[at].strip() if at < len(cells) else "" for _, cells in lines[1:]]
         typed = _typed(texts, comma=mark == ";")
-        if fault := _fault_of_heading(head, typed, found):
+        if fault := _fault_of_heading(head, typed, result):
             raise WorkbookError(f"column {at + 1} of the file: {fault}", where=path, hint=_OTHER_HEADING)
         if head:
-            found[head] = typed
-    return _wanted(found, wanted)
+            result[head] = typed
+    return _wanted(result, wanted)
 
 
 def _fault_of_heading(head: str, cells: Sequence[float | str | None], others: Mapping[str, object]) -> str:
@@ -189,7 +189,7 @@ def columns_of_range(
     area = area_of_reference(workbook, reference, only_sheet, book)
     if area.rows < 2:
         raise DefinitionError("the range has one row", where=str(area), hint="Its first row has the headings")
-    found: dict[str, list[float | str | None]] = {}
+    result: dict[str, list[float | str | None]] = {}
     for column in range(area.left, area.right + 1):
         head = as_text(workbook.content(Cell(area.sheet, area.top, column)).value).strip()
         cells: list[float | str | None] = []
@@ -202,11 +202,11 @@ def columns_of_range(
                 cells.append((value or "").strip() or None)
             else:
                 cells.append(str(value).upper() if isinstance(value, bool) else float(value))
-        if fault := _fault_of_heading(head, cells, found):
+        if fault := _fault_of_heading(head, cells, result):
             raise DefinitionError(fault, where=Cell(area.sheet, area.top, column), hint=_OTHER_HEADING)
         if head:
-            found[head] = cells
-    return _wanted(found, wanted), f"{book.name} {area}"
+            result[head] = cells
+    return _wanted(result, wanted), f"{book.name} {area}"
 
 
 def _wanted(columns: dict[str, list[float | str | None]], wanted: str | None) -> dict[str, list[float | str | None]]:
@@ -215,31 +215,31 @@ def _wanted(columns: dict[str, list[float | str | None]], wanted: str | None) ->
     return columns if wanted is None else {name: columns[name] for name in names_of(wanted, [*columns], "column")}
 
 
-def _cautions(found: Fits) -> list[str]:
+def _cautions(fits: Fits) -> list[str]:
     return [
         f"{each.name}: {caution}."
-        for each in found.columns
+        for each in fits.columns
         if each.fitting is not None
         for caution in each.fitting.cautions
     ]
 
 
-def _report(found: Fits, source: str) -> StudyReport:
+def _report(fits: Fits, source: str) -> StudyReport:
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
-    below = f"{source}: {len(found.columns)} column{'s' * (len(found.columns) != 1)}"
+    below = f"{source}: {len(fits.columns)} column{'s' * (len(fits.columns) != 1)}"
     title = "Distributions fitted to columns"
-    return StudyReport(title, below, blocks_of(_blocks(found)), "Fit", partial(_as_json, found, source))
+    return StudyReport(title, below, blocks_of(_blocks(fits)), "Fit", partial(_as_json, fits, source))
 
 
-def _blocks(found: Fits) -> Iterator[str | Block]:
+def _blocks(fits: Fits) -> Iterator[str | Block]:
     from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import Table
     from xlmc.outputs.summary import share_text
 
     rows = []
-    for each in found.columns:
+    for each in fits.columns:
         if each.fitting is None or each.best is None:
             continue
         near = [f.name for f in each.fitting.fits[1:] if f.aic - each.best.aic < 2.0]
@@ -249,13 +249,13 @@ def _blocks(found: Fits) -> Iterator[str | Block]:
     if rows:
         heads = ("Column", "Values", "Distribution", "Parameters", "About as good")
         yield Table("The best distribution of each column", heads, tuple(rows), (1,))
-    if found.pairs:
-        yield _pairs(found)
+    if fits.pairs:
+        yield _pairs(fits)
         yield (
             "Copulas are fitted to the ranks of the two columns; ΔAIC says by how much the Gaussian one, which rank "
             "correlations stand for, is behind the best. “Turned” means that one goes up as the other goes down."
         )
-    for each in found.columns:
+    for each in fits.columns:
         if each.shares:
             shares = tuple((text, share_text(share)) for text, share in each.shares.items())
             yield Table(f"{each.name}: shares of its texts", ("Text", "Share"), shares, (1,))
@@ -276,12 +276,12 @@ def _parameters(each: ColumnFit, best: Fitted) -> str:
     return ", ".join(parts)
 
 
-def _pairs(found: Fits) -> Table:
+def _pairs(fits: Fits) -> Table:
     from xlmc.montecarlo.number_text import count_text, fixed_text, number_text
     from xlmc.outputs.document.parts import Table
 
     rows = []
-    for pair in found.pairs:
+    for pair in fits.pairs:
         best, *_ = pair.copulas
         gaussian = next((each for each in pair.copulas if each.name == "Gaussian"), None)
         behind = "" if gaussian is None else fixed_text(gaussian.aic - best.aic, 1)
@@ -292,7 +292,7 @@ def _pairs(found: Fits) -> Table:
     return Table("How the columns hang together", heads, tuple(rows), (2, 3, 6))
 
 
-def _as_json(found: Fits, source: str) -> dict[str, object]:
+def _as_json(fits: Fits, source: str) -> dict[str, object]:
     from xlmc.outputs.studies.json_numbers import estimate_json
 
     return {
@@ -307,7 +307,7 @@ def _as_json(found: Fits, source: str) -> dict[str, object]:
                 "shares": {text: estimate_json(share) for text, share in each.shares.items()},
                 "not_fitted": each.why or None,
             }
-            for each in found.columns
+            for each in fits.columns
         ],
         "pairs": [
             {
@@ -325,6 +325,6 @@ def _as_json(found: Fits, source: str) -> dict[str, object]:
                     for each in pair.copulas
                 ],
             }
-            for pair in found.pairs
+            for pair in fits.pairs
         ],
     }

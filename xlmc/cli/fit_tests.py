@@ -145,16 +145,16 @@ def _of_range(source: Path, reference: str) -> list[list[Item]]:
 
 def _columns(headings: Iterable[object]) -> dict[str, tuple[int, str]]:
     """Return what each column is -> its place from 0, and its unit as the heading says it."""
-    found: dict[str, tuple[int, str]] = {}
+    result: dict[str, tuple[int, str]] = {}
     for place, heading in enumerate(headings):
         text = heading.casefold() if isinstance(heading, str) else ""
         unit = _UNIT.search(text)
         plain = text[: unit.start()] if unit else text
         for what, pattern in _PATTERNS.items():
-            if what not in found and pattern.search(plain):
-                found[what] = place, unit[1] if unit else ""
+            if what not in result and pattern.search(plain):
+                result[what] = place, unit[1] if unit else ""
                 break
-    return found
+    return result
 
 
 def _contents(
@@ -233,5 +233,5 @@ def _number(item: Item, what: str, row: int, source: Path) -> float:
             pass
     elif item is not None:
         return item
-    said = f"'{item}'" if item else "blank"
-    raise DefinitionError(f"{source}, row {row}: {what} is {said}", hint="Every test needs a number there.")
+    message = f"'{item}'" if item else "blank"
+    raise DefinitionError(f"{source}, row {row}: {what} is {message}", hint="Every test needs a number there.")

@@ -65,11 +65,11 @@ def methods(
     if quick:
         given = quick_settings(given)
     with step_line() as tell:
-        found = study(model, accuracy=accuracy, seed=seed, tell=tell, **given)
-    report = methods_report(found, figures=files.show_figures)
-    advice = (line for each in recommendation(found) for line in (each, ""))
-    written = output.give(report, files, [*in_short(found), "", *advice])
+        result = study(model, accuracy=accuracy, seed=seed, tell=tell, **given)
+    report = methods_report(result, figures=files.show_figures)
+    advice = (line for each in recommendation(result) for line in (each, ""))
+    written = output.give(report, files, [*in_short(result), "", *advice])
     written.check()
-    end_early(found.ended)
-    if found.reference.warnings:
+    end_early(result.ended)
+    if result.reference.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)

@@ -69,5 +69,5 @@ def did_you_mean(typed: str, known: Iterable[str]) -> str:
     from difflib import get_close_matches
 
     spellings = {name.casefold(): name for name in known}
-    found = get_close_matches(typed.casefold(), spellings, n=1, cutoff=0.6)
-    return f" Did you mean {spellings[found[0]]}?" if found else ""
+    result = get_close_matches(typed.casefold(), spellings, n=1, cutoff=0.6)
+    return f" Did you mean {spellings[result[0]]}?" if result else ""

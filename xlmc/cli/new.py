@@ -150,8 +150,8 @@ def templates(package: Path = _PACKAGE) -> dict[str, Template]:
         books = {path.stem: path for path in folder.glob("*.xlsx") if not _NO_TEMPLATE.search(path.stem)}
         names = [name for name in books if not any(end and name.endswith(end) for end in _UNITS.values())]
         if names:
-            found = {name: _template(name, books) for name in names}
-            return dict(sorted(found.items(), key=_order))
+            result = {name: _template(name, books) for name in names}
+            return dict(sorted(result.items(), key=_order))
     raise WorkbookError("the templates are missing", where=package, hint="install xlmc again")
 
 

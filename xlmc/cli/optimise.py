@@ -78,7 +78,7 @@ def optimise(
 
     model, files = output.open(book, functions, of_run=True)
     with step_line() as tell:
-        found = study(
+        result = study(
             model,
             maximise=maximise,
             minimise=minimise,
@@ -90,9 +90,9 @@ def optimise(
             **run,
             tell=tell,
         )
-    report = optimise_report(found, _again(book, decision, indifference, allow_lost, runs, found))
+    report = optimise_report(result, _again(book, decision, indifference, allow_lost, runs, result))
     written = output.give(report, files)
-    conclude(written, found.run, _doubts(found))
+    conclude(written, result.run, _doubts(result))
 
 
 def _again(
@@ -101,31 +101,31 @@ def _again(
     indifference: float | None,
     allow_lost: float,
     runs: float,
-    found: Optimised,
+    result: Optimised,
 ) -> str:
     """Return the command that gives the same again."""
-    goal = found.goal
+    goal = result.goal
     parts = ["xlmc", "optimise", book.name, "--maximise" if goal.maximise else "--minimise", goal.measure.text]
-    parts += [part for each in found.requirements for part in ("--subject-to", each.requirement.text)]
+    parts += [part for each in result.requirements for part in ("--subject-to", each.requirement.text)]
     parts += [part for name in decision for part in ("--decision", name)]
     parts += [] if indifference is None else ["--indifference", repr(indifference)]
     parts += [] if allow_lost == 0.1 else ["--allow-lost", repr(allow_lost)]
     parts += [] if runs == 60.0 else ["--runs", repr(runs)]
-    settings = found.run.settings
-    return shlex.join([*parts, "-n", str(found.run.trials), "--seed", str(settings.seed), "--engine", settings.engine])
+    settings = result.run.settings
+    return shlex.join([*parts, "-n", str(result.run.trials), "--seed", str(settings.seed), "--engine", settings.engine])
 
 
-def _doubts(found: Optimised) -> list[str]:
+def _doubts(result: Optimised) -> list[str]:
     """Return why the answer must not be used."""
     from xlmc.outputs.studies.optimise import lost_sentences
 
-    missed = [each.requirement.text for each in found.requirements if each.chance <= 0.5]
-    found_one = any(each.meets for each in found.rivals)
+    missed = [each.requirement.text for each in result.requirements if each.chance <= 0.5]
+    found_one = any(each.meets for each in result.rivals)
     none = "The best of the search" if found_one else "No candidate that was found"
     verb = "does not meet" if found_one else "meets"
     doubts = [f"{none} {verb} what is required: {text} fails" for text in missed]
-    if math.isnan(found.found.value) and not found.run.warnings:
+    if math.isnan(result.estimate.value) and not result.run.warnings:
         doubts.append("No candidate gives a number for what is asked")
-    if not found.is_whole or any(each.looks_better for each in found.excluded):
-        doubts += [each.rstrip(".") for each in lost_sentences(found)]
+    if not result.is_whole or any(each.looks_better for each in result.excluded):
+        doubts += [each.rstrip(".") for each in lost_sentences(result)]
     return doubts

@@ -51,14 +51,14 @@ class WholeNumber(click.ParamType):  # type: ignore[type-arg]  # no generic befo
         from xlmc.montecarlo.definitions.amounts import typed_whole_number
         from xlmc.montecarlo.number_text import count_text
 
-        found = value if isinstance(value, int) else typed_whole_number(value)
-        if found is None:
+        result = value if isinstance(value, int) else typed_whole_number(value)
+        if result is None:
             self.fail(f"{value!r} is not a whole number. Type it like 200000, 200,000, 2e5 or 200k.", param, ctx)
-        if found < self._least:
-            self.fail(f"{count_text(found)} is too small. Type {count_text(self._least)} or more.", param, ctx)
-        if self._most is not None and found > self._most:
-            self.fail(f"{count_text(found)} is too large. Type {count_text(self._most)} or less.", param, ctx)
-        return found
+        if result < self._least:
+            self.fail(f"{count_text(result)} is too small. Type {count_text(self._least)} or more.", param, ctx)
+        if self._most is not None and result > self._most:
+            self.fail(f"{count_text(result)} is too large. Type {count_text(self._most)} or less.", param, ctx)
+        return result
 
 
 class FilePath(click.Path):
@@ -93,11 +93,11 @@ class OneOf(click.Choice):  # type: ignore[type-arg]  # likewise
         from xlmc.cli.mistakes import did_you_mean
 
         words: dict[str, str] = {word.casefold(): word for word in self.choices}
-        found = words.get(str(value).strip().casefold())
-        if found is None:
+        text = words.get(str(value).strip().casefold())
+        if text is None:
             known = ", ".join(self.choices)
             self.fail(f"{value!r} is not one of {known}.{did_you_mean(value, self.choices)}", param, ctx)
-        return found
+        return text
 
 
 jobs_option = click.option(

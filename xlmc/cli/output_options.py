@@ -182,10 +182,10 @@ def with_options(*options: Callable[[Any], Any]) -> Callable[[F], F]:
     """Add options, which the help lists in this order."""
 
     def add(command: F) -> F:
-        found: Any = command
+        value: Any = command
         for option in reversed(options):
-            found = option(found)
-        return cast(F, found)
+            value = option(value)
+        return cast(F, value)
 
     return add
 
@@ -198,8 +198,8 @@ def _aliased(given: Mapping[_Kind, Path | tuple[Path, ...] | None]) -> Iterator[
     """
     from xlmc.excel.workbook.target import refuse_other_ending
 
-    for kind, found in given.items():
-        for path in (found,) if isinstance(found, Path) else found or ():
+    for kind, result in given.items():
+        for path in (result,) if isinstance(result, Path) else result or ():
             refuse_other_ending(path, kind.endings, kind.noun)
             yield path
 
@@ -333,11 +333,11 @@ class Outputs(NamedTuple):
             raise click.UsageError(
                 "--case, --sections, --forecasts and --paper are of a report: give -o REPORT.pdf or -o REPORT.docx."
             )
-        found = self._with_free_default(like)
+        result = self._with_free_default(like)
         for path in self._named:
             self._refuse_taken(path)
-        refuse_same_file([*([found.default] if found.default else []), *self._named])
-        return found
+        refuse_same_file([*([result.default] if result.default else []), *self._named])
+        return result
 
     @property
     def _named(self) -> list[Path]:
@@ -377,11 +377,11 @@ class Outputs(NamedTuple):
         if self.overwrite:
             Target(self.default, self.name, self.overwrite).check()
             return self
-        found, reason = free_target(self.default, self.name)
+        path, reason = free_target(self.default, self.name)
         if reason is not None:
             why = f"{self.default}: {capitalised(reason)}"
-            say(f"warning: {why}; it stays as it is, and results go to {found}.", err=True)
-        return self._replace(default=found)
+            say(f"warning: {why}; it stays as it is, and results go to {path}.", err=True)
+        return self._replace(default=path)
 
     def write(self, run: RunResult) -> tuple[bool, list[str]]:
         """Write them all: whether all could be, and what to say of where they are when the answer has been printed.
@@ -394,11 +394,11 @@ class Outputs(NamedTuple):
 
         written, lines = True, []
         for path, label, write in self._files(Simulation(run)):
-            found = written_or_reported(path, partial(self._write_beside, path, write))
-            if found is None:
+            result = written_or_reported(path, partial(self._write_beside, path, write))
+            if result is None:
                 written = False
             else:
-                lines.append(f"{label} {found}")
+                lines.append(f"{label} {result}")
         if run.kept_inputs < run.accepted:
             every = counted_text(run.accepted, "accepted trial")
             kept = f"the draws of {count_text(run.kept_inputs)} of {every} were kept"
@@ -417,13 +417,13 @@ class Outputs(NamedTuple):
                 refuse_read(path, self._read)  # it may have become a link to one during the run
             write(path, overwrite=self.overwrite or own)
         except TakenError as taken:
-            found, _ = free_target(results_beside(path) if own else path, self.name, after=path)
-            write(found)
+            result, _ = free_target(results_beside(path) if own else path, self.name, after=path)
+            write(result)
             say(
-                f"note: {path}: {capitalised(taken.message)}; it stays as it is, and {found} was written instead.",
+                f"note: {path}: {capitalised(taken.message)}; it stays as it is, and {result} was written instead.",
                 err=True,
             )
-            return found
+            return result
         return path
 
     def _files(self, run: Simulation) -> Iterator[tuple[Path, str, _Write]]:
@@ -458,13 +458,13 @@ class Outputs(NamedTuple):
         return None if self.beside is None else open_run(self.beside, functions=own)
 
     def _write_report(self, run: Simulation, path: Path, *, overwrite: bool = False) -> Path:
-        found = self.contents.wanted()
+        wanted = self.contents.wanted()
         return run.save_report(
             path,
-            case=found.case,
-            sections=found.sections,
-            forecasts=found.forecasts,
-            paper=found.paper,
+            case=wanted.case,
+            sections=wanted.sections,
+            forecasts=wanted.forecasts,
+            paper=wanted.paper,
             overwrite=overwrite,
         )
 

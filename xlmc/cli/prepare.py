@@ -69,9 +69,9 @@ def prepare_book(
         refuse_into_other_format(book)
     else:
         Target(target, "", overwrite, read=read).check()
-    found = prepared(book, _areas(workbook, assumptions), _areas(workbook, forecasts), workbook)
-    _show(found, workbook)
-    if not found.is_new:
+    result = prepared(book, _areas(workbook, assumptions), _areas(workbook, forecasts), workbook)
+    _show(result, workbook)
+    if not result.is_new:
         say(paragraph(f"{book} has all of this in its tables already: nothing was written."))
         return
 
@@ -81,9 +81,9 @@ def prepare_book(
         else:
             Target(target, "", overwrite, read=read).check()
 
-    write_workbook(target, found.data, check)
+    write_workbook(target, result.data, check)
     given = "" if functions is None else f" --functions {functions.path}"
-    where = f"its last sheet, {found.sheet!r}," if found.sheet else "its tables"
+    where = f"its last sheet, {result.sheet!r}," if result.sheet else "its tables"
     say(
         paragraph(
             f"{target} is written. Open it, and on {where} choose a Distribution for what is uncertain, and type its "
@@ -105,12 +105,15 @@ def _areas(book: Workbook, places: Sequence[str]) -> list[Area] | None:
         raise WorkbookError(str(error.args[0])) from None
 
 
-def _show(found: Prepared, workbook: Workbook) -> None:
+def _show(prepared: Prepared, workbook: Workbook) -> None:
     from xlmc.cli.printing import table
     from xlmc.montecarlo.model.cell_forms import content_in, forms_of
     from xlmc.montecarlo.number_text import count_text
 
-    for title, rows in (("Assumptions, frozen", found.found.assumptions), ("Forecasts", found.found.forecasts)):
+    for title, rows in (
+        ("Assumptions, frozen", prepared.proposals.assumptions),
+        ("Forecasts", prepared.proposals.forecasts),
+    ):
         if not rows:
             continue
         shown = rows[:_MOST_TOLD]
@@ -122,17 +125,17 @@ def _show(found: Prepared, workbook: Workbook) -> None:
         table(title, ("Name", "Cell", "Value", "Units"), lines, right=(2,))
         if len(rows) > _MOST_TOLD:
             say(f"… and {count_text(len(rows) - _MOST_TOLD)} more.")
-    if found.found.further:
-        more = found.found.further
+    if prepared.proposals.further:
+        more = prepared.proposals.further
         many = f"{count_text(more)} more formulas are" if more > 1 else "1 more formula is"
         say(
             paragraph(f"note: {many} used by no other: name answers with --forecast Sheet!Cell."),
             err=True,
         )
-    for cell, why in found.found.passed_over[:_MOST_TOLD]:
+    for cell, why in prepared.proposals.passed_over[:_MOST_TOLD]:
         say(f"note: {cell} {why}, and has no row.", err=True)
-    if not found.found.assumptions and not found.found.forecasts and found.sheet:
+    if not prepared.proposals.assumptions and not prepared.proposals.forecasts and prepared.sheet:
         say("note: no formula uses a number that is typed into a cell: the tables are empty.", err=True)
-    elif not found.found.forecasts and found.sheet and not found.found.passed_over:
+    elif not prepared.proposals.forecasts and prepared.sheet and not prepared.proposals.passed_over:
         message = "no formula that gives a number depends on these cells: name an answer with --forecast Sheet!Cell"
         say(f"note: {message}.", err=True)

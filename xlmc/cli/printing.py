@@ -61,15 +61,15 @@ def use_number_style(style: str) -> None:
     click.get_current_context().with_resource(in_style(style))
 
 
-def notices(found: Sequence[Notice]) -> None:
+def notices(result: Sequence[Notice]) -> None:
     """Print what the person should know, to stderr."""
-    for notice in found:
+    for notice in result:
         say(f"note: {notice}", err=True)
 
 
-def warnings(found: Sequence[str], missing: Collection[str] = ()) -> None:
+def warnings(result: Sequence[str], missing: Collection[str] = ()) -> None:
     """Print why an answer must not be used, to stderr; of those that are `missing`, that others do not need them."""
-    for warning in found:
+    for warning in result:
         meaning = "this answer is missing, and the others do not need it"
         verdict = meaning if warning in missing else "the answer must not be used as it is"
         say(f"warning: {shortened(warning)}; {verdict}.", err=True)

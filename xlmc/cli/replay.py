@@ -52,70 +52,70 @@ def replay(
     from xlmc.outputs import replay as replaying
 
     with progress_bar() as progress:
-        found = replaying.replay(recorded, books=books, jobs=jobs, progress=progress, functions=functions)
-    if found.repeated is not None:
-        use_number_style(found.repeated.settings.number_style)
+        result = replaying.replay(recorded, books=books, jobs=jobs, progress=progress, functions=functions)
+    if result.repeated is not None:
+        use_number_style(result.repeated.settings.number_style)
     if as_json:
-        say_json(_as_json(found))
+        say_json(_as_json(result))
     else:
-        for line in _lines(found, recorded):
+        for line in _lines(result, recorded):
             say(line)
-    if not found.identical:
+    if not result.identical:
         raise click.exceptions.Exit(DIFFERS)
 
 
-def _lines(found: Replayed, path: Path) -> Iterator[str]:
+def _lines(result: Replayed, path: Path) -> Iterator[str]:
     from xlmc.analysis.results.record import changed_from_of
 
-    record = found.record
+    record = result.record
     yield (
         f"{path.name} records a run of {record['file.name']}: {_figure(record['counts.trials'])} trials, "
         f"seed {record['settings.seed']}."
     )
     if (changed := changed_from_of(record)) is not None:
         yield changed.sentence
-    if found.repeated is not None:
-        yield from failing_lines(found.repeated)
-    yield f"{_verdict(found)}."
-    if not found.of_this_version and not found.to_the_last_bit:
-        yield from _other_version(found)
-    yield from _changes(found.changes, "Different from the record:")
-    if found.fault is not None:
-        yield f"The workbook cannot be run any more: {found.fault}"
-    yield from _numbers(found.numbers)
-    yield from _sheet_lines(found)
-    if found.of_this_version and not found.changes and not found.identical:
-        yield from _unexplained_lines(found)
-    yield from _changes(found.environment, "Software and processor features that are not those of the recorded run:")
+    if result.repeated is not None:
+        yield from failing_lines(result.repeated)
+    yield f"{_verdict(result)}."
+    if not result.of_this_version and not result.to_the_last_bit:
+        yield from _other_version(result)
+    yield from _changes(result.changes, "Different from the record:")
+    if result.fault is not None:
+        yield f"The workbook cannot be run any more: {result.fault}"
+    yield from _numbers(result.numbers)
+    yield from _sheet_lines(result)
+    if result.of_this_version and not result.changes and not result.identical:
+        yield from _unexplained_lines(result)
+    yield from _changes(result.environment, "Software and processor features that are not those of the recorded run:")
 
 
-def _other_version(found: Replayed) -> Iterator[str]:
+def _other_version(result: Replayed) -> Iterator[str]:
     """Which xlmc made the run, what has changed since, and how to repeat it as it was."""
     from xlmc.montecarlo.loop.version import __version__
     from xlmc.outputs.replay.versions import install
 
-    made = f"xlmc {found.version}" if found.version else "A version of xlmc that did not record its number"
+    made = f"xlmc {result.version}" if result.version else "A version of xlmc that did not record its number"
     yield f"{made} made this run, and this is xlmc {__version__}."
-    if found.rules:
+    if result.rules:
         yield "Rules of calculation that have changed since then, and that its formulas may depend on:"
-        yield from (f"  {rule.sentence} ({rule.since})" for rule in found.rules)
-    elif not found.identical:
+        yield from (f"  {rule.sentence} ({rule.since})" for rule in result.rules)
+    elif not result.identical:
         yield "As far as xlmc knows, no rule that its formulas depend on has changed since then."
-    if found.version:
+    if result.version:
         yield "To repeat it as it was made, install that version beside this one, in a clone of xlmc's repository:"
-        yield f"  {install(found.version)}"
-        yield f"If the clone has no tag v{found.version}, CHANGELOG-archive.md names the last commit of that version."
+        yield f"  {install(result.version)}"
+        yield f"If the clone has no tag v{result.version}, CHANGELOG-archive.md names the last commit of that version."
 
 
-def _verdict(found: Replayed) -> str:
+def _verdict(result: Replayed) -> str:
 
-    count = found.record["counts.accepted"]
+    count = result.record["counts.accepted"]
     accepted = f"{_figure(count)} accepted trial{'s' * (count != 1)}"
-    if found.to_the_last_bit:
+    if result.to_the_last_bit:
         return f"identical: the same {accepted} to the last bit"
-    if found.identical:
+    if result.identical:
         return f"identical to 1e-12: the same {accepted}, their numbers equal but for rounding"
-    if found.same_bits:
+    if result.same_bits:
         return f"differs, although the {accepted} {'is' if count == 1 else 'are'} the same to the last bit"
     return "differs"
 
@@ -138,11 +138,11 @@ def _numbers(numbers: Sequence[NumberChange]) -> Iterator[str]:
     yield from _rest(numbers)
 
 
-def _sheet_lines(found: Replayed) -> Iterator[str]:
+def _sheet_lines(result: Replayed) -> Iterator[str]:
     """Yield what the result sheets show that the repeated run does not give."""
     from xlmc.montecarlo.number_text import count_text
 
-    differences = found.shown.differences
+    differences = result.shown.differences
     if differences:
         count = len(differences)
         yield (
@@ -152,9 +152,9 @@ def _sheet_lines(found: Replayed) -> Iterator[str]:
     for difference in differences[:_MOST]:
         yield f"  {difference.where} says {_value(difference.says)}, the run gives {_value(difference.gives)}"
     yield from _rest(differences)
-    for name in found.shown.missing:
+    for name in result.shown.missing:
         yield f"The result sheet {name} is missing."
-    for sentence in found.shown.left_out:
+    for sentence in result.shown.left_out:
         yield f"Not compared: {sentence}."
 
 
@@ -192,40 +192,40 @@ def _rest(listed: Sequence[object]) -> Iterator[str]:
         yield f"  … and {count_text(len(listed) - _MOST)} more"
 
 
-def _unexplained_lines(found: Replayed) -> Iterator[str]:
-    if found.same_bits and not found.numbers:
+def _unexplained_lines(result: Replayed) -> Iterator[str]:
+    if result.same_bits and not result.numbers:
         return
-    if found.same_bits:
+    if result.same_bits:
         yield "Somebody edited the numbers in the record: nothing that the run depends on has changed."
-    elif not found.environment:
+    elif not result.environment:
         yield (
             "Every recorded cell, definition and setting is as it was, and so are the software and the processor: "
             "either somebody edited the record, or the run depends on something that xlmc does not record."
         )
 
 
-def _as_json(found: Replayed) -> dict[str, object]:
+def _as_json(result: Replayed) -> dict[str, object]:
     return {
-        "identical": found.identical,
-        "to_the_last_bit": found.to_the_last_bit,
-        "same_accepted_trials": found.same_bits,
-        "verdict": _verdict(found),
-        "changes": [_change(change) for change in found.changes],
-        "environment": [_change(change) for change in found.environment],
+        "identical": result.identical,
+        "to_the_last_bit": result.to_the_last_bit,
+        "same_accepted_trials": result.same_bits,
+        "verdict": _verdict(result),
+        "changes": [_change(change) for change in result.changes],
+        "environment": [_change(change) for change in result.environment],
         "numbers": [
             {"name": n.name, "recorded": n.recorded, "repeated": n.repeated, "equal_to_1e-12": n.close}
-            for n in found.numbers
+            for n in result.numbers
         ],
         "result_sheets": {
-            "compared": list(found.shown.sheets),
-            "differences": [_difference_json(each) for each in found.shown.differences],
-            "missing": list(found.shown.missing),
-            "not_compared": list(found.shown.left_out),
+            "compared": list(result.shown.sheets),
+            "differences": [_difference_json(each) for each in result.shown.differences],
+            "missing": list(result.shown.missing),
+            "not_compared": list(result.shown.left_out),
         },
-        "checks": [] if found.repeated is None else failing_lines(found.repeated),
-        "made_by": found.version,
-        "rules_since": [{"version": rule.since, "rule": rule.sentence} for rule in found.rules],
-        "fault": None if found.fault is None else str(found.fault),
+        "checks": [] if result.repeated is None else failing_lines(result.repeated),
+        "made_by": result.version,
+        "rules_since": [{"version": rule.since, "rule": rule.sentence} for rule in result.rules],
+        "fault": None if result.fault is None else str(result.fault),
     }
 
 

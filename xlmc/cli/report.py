@@ -69,26 +69,26 @@ def report(
                 " xlmc simulate BOOK -o RUN.xlmcrun."
             )
         asked._replace(name=run.name if seal is None else seal.book).check(run)  # before the run
-        found = _repeated(run, functions)
+        result = _repeated(run, functions)
     else:
-        found = open_run(run, functions=functions)
+        result = open_run(run, functions=functions)
         if seal is None or not seal.whole:
             say(f"warning: {run}: this saved run was changed since xlmc wrote it (its seal is broken).", err=True)
     if detailed is not None:
-        found = replace(found, settings=replace(found.settings, detailed=detailed))
-    use_number_style(found.settings.number_style)
-    notices(found.model.notices)
-    default = None if asked.files else results_beside(run, copy_ending(found.model.path))
-    outputs = asked._replace(name=found.model.workbook.name, default=default).check(found.model.path)
-    outputs.check_against(found.model)
-    written, lines = outputs.write(found)  # before the answer is printed, so that no terminal can cost a run
-    show_run(found)
+        result = replace(result, settings=replace(result.settings, detailed=detailed))
+    use_number_style(result.settings.number_style)
+    notices(result.model.notices)
+    default = None if asked.files else results_beside(run, copy_ending(result.model.path))
+    outputs = asked._replace(name=result.model.workbook.name, default=default).check(result.model.path)
+    outputs.check_against(result.model)
+    written, lines = outputs.write(result)  # before the answer is printed, so that no terminal can cost a run
+    show_run(result)
     for line in lines:
         say(line)
-    warnings(found.warnings, found.refused)
+    warnings(result.warnings, result.refused)
     if not written:
         raise click.exceptions.Exit(NOT_WRITTEN)
-    if found.warnings:
+    if result.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
 
 

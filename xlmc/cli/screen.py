@@ -69,7 +69,7 @@ def screen(
 
     model, files = output.open(book, functions, of_run=True)
     with step_line() as tell:
-        found = screening.screen(
+        result = screening.screen(
             model,
             tolerance,
             chance=chance,
@@ -80,7 +80,7 @@ def screen(
             **run,
             tell=tell,
         )
-    report = screen_report(found)
-    said = f"{report.below.partition(':')[0]}: what it could do without"
-    written = output.give(report, files, [said, *printed(found)])
-    conclude(written, found.run, ended=found.ended)
+    report = screen_report(result)
+    message = f"{report.below.partition(':')[0]}: what it could do without"
+    written = output.give(report, files, [message, *printed(result)])
+    conclude(written, result.run, ended=result.ended)

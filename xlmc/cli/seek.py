@@ -43,10 +43,10 @@ def seek(
     from xlmc.outputs.studies.seek import seek_report
 
     files = output.files(book, functions=functions)
-    found = study.seek(book, cell, to, by, low=low, high=high, functions=functions)
-    use_number_style(found.number_style)
-    report = seek_report(found)
+    result = study.seek(book, cell, to, by, low=low, high=high, functions=functions)
+    use_number_style(result.number_style)
+    report = seek_report(result)
     written = output.give(report, files)
     written.check()
-    if not found.values.size:
+    if not result.values.size:
         raise click.exceptions.Exit(NOT_FOUND)

@@ -141,8 +141,8 @@ def _of_scenarios(run: RunResult, answers: Sequence[ScenarioAnswers]) -> list[st
     impossible = [
         f"scenario {name!r} is not possible: {why.rstrip('.')}" for name, why in impossible_scenarios(run).items()
     ]
-    unusable = ((each.name, said) for each in answers[1:] for said in each.warnings if said not in own)
-    return [*impossible, *(f"scenario {name!r}: {said}" for name, said in unusable)]
+    unusable = ((each.name, message) for each in answers[1:] for message in each.warnings if message not in own)
+    return [*impossible, *(f"scenario {name!r}: {messages}" for name, messages in unusable)]
 
 
 def _hints(model: CompiledModel, trials: int | None, engine: str | None) -> list[Notice]:
@@ -209,12 +209,18 @@ def _show_evidence(run: RunResult) -> None:
     from xlmc.outputs.document.content.evidence import item_table, means_tables, trials_sentence
     from xlmc.outputs.document.parts import Paragraph
 
-    found = run.agreement
-    if found is None:
+    agreement = run.agreement
+    if agreement is None:
         return
-    sentences = [] if found.sentence in found.remarks else [f"{capitalised(found.sentence)}."]
-    said = Paragraph(" ".join([*sentences, trials_sentence(found)]))  # remarks come with the other notices
-    show([item_table(found), said, *means_tables(run, found, [*found.found.forecasts][:_MOST_MOVED])])
+    sentences = [] if agreement.sentence in agreement.remarks else [f"{capitalised(agreement.sentence)}."]
+    message = Paragraph(" ".join([*sentences, trials_sentence(agreement)]))  # remarks come with the other notices
+    show(
+        [
+            item_table(agreement),
+            message,
+            *means_tables(run, agreement, [*agreement.evidence_trials.forecasts][:_MOST_MOVED]),
+        ]
+    )
 
 
 def _show_scenarios(run: RunResult) -> None:
@@ -260,11 +266,11 @@ def _discards(run: RunResult) -> list[tuple[str, ...]]:
 
     return [
         (
-            found.filter.name,
-            found.forecast,
-            limits_text(found.filter),
-            count_text(found.trials),
-            share_text(found.share),
+            discarded.filter.name,
+            discarded.forecast,
+            limits_text(discarded.filter),
+            count_text(discarded.trials),
+            share_text(discarded.share),
         )
-        for found in discards_of(run)
+        for discarded in discards_of(run)
     ]

@@ -47,11 +47,11 @@ def stability(
 
     model, files = output.open(book, functions, of_run=True)
     with step_line() as tell:
-        found = study.stability(model, trials=trials, seed=seed, jobs=jobs, tell=tell)
-    report = stability_report(found, all_cells)
+        result = study.stability(model, trials=trials, seed=seed, jobs=jobs, tell=tell)
+    report = stability_report(result, all_cells)
     written = output.give(report, files)
-    warnings(found.run.warnings, found.run.refused)
+    warnings(result.run.warnings, result.run.refused)
     written.check()
-    end_early(found.ended)
-    if found.wrong or found.run.warnings:
+    end_early(result.ended)
+    if result.wrong or result.run.warnings:
         raise click.exceptions.Exit(NOT_TO_BE_USED)

@@ -63,7 +63,7 @@ def stress(
 
     model, files = output.open(book, functions, of_run=True)
     with step_line() as tell:
-        found = study.stress(
+        result = study.stress(
             model,
             share=share,
             assumptions=assumption,
@@ -72,6 +72,6 @@ def stress(
             **run,
             tell=tell,
         )
-    report = stress_report(found)
+    report = stress_report(result)
     written = output.give(report, files)
-    conclude(written, found.run)
+    conclude(written, result.run)

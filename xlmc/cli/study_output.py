@@ -85,13 +85,13 @@ class StudyOutput(NamedTuple):
         use_number_style(model.definitions.settings.number_style)
         return model, self.files(book, functions=functions, **of)
 
-    def give(self, report: StudyReport, files: Files, said: Iterable[Block | str] | None = None) -> Written:
+    def give(self, report: StudyReport, files: Files, messages: Iterable[Block | str] | None = None) -> Written:
         """Write the files of a study, then print its result as JSON, or what it says and where the files are.
 
         Args:
             report: of the study.
             files: what to write.
-            said: what is printed, in order; by default all of the report, below the line of its workbook.
+            messages: what is printed, in order; by default all of the report, below the line of its workbook.
 
         Returns:
             What was written; what failed is to be raised after the warnings (`Written.check`).
@@ -102,7 +102,7 @@ class StudyOutput(NamedTuple):
         if self.as_json:
             say_json(report.json())
         else:
-            show(blocks_of([f"{report.below}.", *report.blocks] if said is None else said))
+            show(blocks_of([f"{report.below}.", *report.blocks] if messages is None else messages))
             written.print_paths()
         return written
 

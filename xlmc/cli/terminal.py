@@ -137,7 +137,7 @@ def _in_green(text: str, cure: str | None) -> str:
     if not cure:
         return text
     pattern = r"\s+".join(map(re.escape, printable(cure).split()))
-    return re.sub(pattern, lambda found: f"\x1b[32m{found[0]}\x1b[0m", text, count=1, flags=re.IGNORECASE)
+    return re.sub(pattern, lambda match: f"\x1b[32m{match[0]}\x1b[0m", text, count=1, flags=re.IGNORECASE)
 
 
 def _wrap_note(line: str) -> str:

@@ -77,7 +77,7 @@ def uncertainty(
 
     model, files = output.open(book, functions, of_run=True, not_kept=TWO_LOOPS_NOT_KEPT)
     with step_line() as tell:
-        found = study.uncertainty(
+        loops = study.uncertainty(
             model,
             outer=outer,
             inner=inner,
@@ -91,6 +91,6 @@ def uncertainty(
             keep_trials=any(path.suffix.casefold() in (".csv", ".parquet") for path in output.paths),
             tell=tell,
         )
-    report = uncertainty_report(found)
+    report = uncertainty_report(loops)
     written = output.give(report, files)
-    conclude(written, found.run)
+    conclude(written, loops.run)

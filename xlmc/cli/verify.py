@@ -52,27 +52,27 @@ def verify(
     if definitions is not None and not definitions.forecasts and not definitions.filters:
         raise click.UsageError(f"{book} has no forecasts and no filters; give --all to check every formula cell.")
     files = output.files(book, functions=functions)
-    found = check(workbook, definitions)
+    verification = check(workbook, definitions)
     cells = "every formula cell" if everything else "the formula cells that forecasts and filters need"
     report = StudyReport(
         "Recomputed values beside those that are saved",
         f"{book.name}: {cells}",
-        blocks_of(_blocks(found, workbook.saved_by, _WRITTEN)),
+        blocks_of(_blocks(verification, workbook.saved_by, _WRITTEN)),
         "Verification",
-        partial(_as_json, found),
+        partial(_as_json, verification),
     )
-    written = output.give(report, files, _blocks(found, workbook.saved_by, _SHOWN))
+    written = output.give(report, files, _blocks(verification, workbook.saved_by, _SHOWN))
     written.check()
-    if found.count(Status.DIFFERING):
+    if verification.count(Status.DIFFERING):
         raise click.exceptions.Exit(DIFFERS)
 
 
-def _as_json(found: Verification) -> dict[str, object]:
+def _as_json(verification: Verification) -> dict[str, object]:
     from xlmc.analysis.studies.verify import Status
 
-    counts = {status.value.replace(" ", "_"): found.count(status) for status in Status}
-    listed = [_entry(cell) for cell in found.cells if cell.status is not Status.MATCHED]
-    return {"formula_cells": len(found.cells), **counts, "cells": listed}
+    counts = {status.value.replace(" ", "_"): verification.count(status) for status in Status}
+    listed = [_entry(cell) for cell in verification.cells if cell.status is not Status.MATCHED]
+    return {"formula_cells": len(verification.cells), **counts, "cells": listed}
 
 
 def _entry(cell: CellCheck) -> dict[str, object]:
@@ -88,17 +88,19 @@ def _entry(cell: CellCheck) -> dict[str, object]:
     return {key: value for key, value in entry.items() if value not in (None, "")}
 
 
-def _blocks(found: Verification, saved_by: str, most: int) -> list[str | Block]:
+def _blocks(verification: Verification, saved_by: str, most: int) -> list[str | Block]:
     """Return what was found, with `most` differing cells; `saved_by` is the program that saved their values."""
     from xlmc.analysis.studies.verify import Status, groups
     from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import Table
 
-    counts = [f"{count_text(found.count(status))} {status.value}" for status in Status if found.count(status)]
-    blocks: list[str | Block] = [
-        f"{count_text(len(found.cells))} formula cells: {', '.join(counts) or 'nothing to check'}."
+    counts = [
+        f"{count_text(verification.count(status))} {status.value}" for status in Status if verification.count(status)
     ]
-    differing = found.of(Status.DIFFERING)
+    blocks: list[str | Block] = [
+        f"{count_text(len(verification.cells))} formula cells: {', '.join(counts) or 'nothing to check'}."
+    ]
+    differing = verification.of(Status.DIFFERING)
     if differing:
         rows = tuple(
             (str(c.cell), c.formula, _written(c.expected), _written(c.got), _percent(c.difference))
@@ -114,8 +116,8 @@ def _blocks(found: Verification, saved_by: str, most: int) -> list[str | Block]:
         )
     if len(differing) > most:
         blocks.append(f"… and {count_text(len(differing) - most)} more; --json lists them all.")
-    volatile = [cell for cell in found.of(Status.VOLATILE) if cell.reason]
-    for status, listed in ((Status.UNSUPPORTED, found.of(Status.UNSUPPORTED)), (Status.VOLATILE, volatile)):
+    volatile = [cell for cell in verification.of(Status.VOLATILE) if cell.reason]
+    for status, listed in ((Status.UNSUPPORTED, verification.of(Status.UNSUPPORTED)), (Status.VOLATILE, volatile)):
         for reason, cells in groups(listed):
             where = ", ".join(str(cell.cell) for cell in cells[:5])
             more = f" and {count_text(len(cells) - 5)} more" if len(cells) > 5 else ""
@@ -127,8 +129,8 @@ def _written(value: object) -> str:
     """Write a value with all digits that it has, which may differ in the last ones."""
     from xlmc.montecarlo.number_text import whole_text
 
-    found = plain(value)
-    return whole_text(found) if isinstance(found, float) else str(found)
+    result = plain(value)
+    return whole_text(result) if isinstance(result, float) else str(result)
 
 
 def _percent(difference: float | None) -> str:

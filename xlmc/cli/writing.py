@@ -36,9 +36,9 @@ class Written(NamedTuple):
 
 def write_files(files: Iterable[tuple[Path, Callable[[], Path]]]) -> Written:
     """Write one file after the other; of each that cannot be written, say so."""
-    found = [written_or_reported(path, write) for path, write in files]
-    paths = [path for path in found if path is not None]
-    return Written(paths, len(paths) == len(found))
+    result = [written_or_reported(path, write) for path, write in files]
+    paths = [path for path in result if path is not None]
+    return Written(paths, len(paths) == len(result))
 
 
 def written_or_reported(path: Path, write: Callable[[], Path]) -> Path | None:

@@ -46,8 +46,8 @@ class Calculation:
     @property
     def notices(self) -> Iterator[Notice]:
         """Yield what could not be computed, cell by cell, with the reason."""
-        for said, cells in (("the saved value stays", self.kept), ("it has no value", self.unknown)):
-            yield from (Notice(f"{why}; {said}", cell) for cell, why in cells.items())
+        for message, cells in (("the saved value stays", self.kept), ("it has no value", self.unknown)):
+            yield from (Notice(f"{why}; {message}", cell) for cell, why in cells.items())
 
     def of(self, book: Workbook) -> Workbook:
         """Return the workbook with these values."""
@@ -153,13 +153,13 @@ class Calculator:
 
     def _with_what_if(self, changing: Collection[Cell]) -> set[Cell]:
         """Return the changing cells, and those of the what-if tables that depend on them."""
-        found, before = set(changing), -1
-        while before != len(found):
-            before, reached = len(found), self._downstream(found)
+        cells, before = set(changing), -1
+        while before != len(cells):
+            before, reached = len(cells), self._downstream(cells)
             for table in self._book.data_tables:
                 if any(cell in reached for cell in (*table.margins(), *table.inputs)):
-                    found |= set(table.area.cells())
-        return found
+                    cells |= set(table.area.cells())
+        return cells
 
     def _fills(self, cell: Cell) -> bool:
         """Return whether an array formula stands in a cell, or fills it: others may read all of it."""
@@ -198,8 +198,8 @@ class Calculator:
 def calculated(book: Workbook, changes: Mapping[str, CellValue], *, volatile: bool) -> Workbook:
     """Compute every formula; see `xlmc.engine.calculate`."""
     typed = {changeable_cell(book, place): value for place, value in changes.items()}
-    found = Calculator(book, typed, volatile=volatile).calculate(typed)
-    return found.of(with_values(book, typed) if typed else book)
+    calculation = Calculator(book, typed, volatile=volatile).calculate(typed)
+    return calculation.of(with_values(book, typed) if typed else book)
 
 
 def _kept_tables(book: Workbook, lost: Collection[Cell]) -> Iterator[tuple[Cell, str]]:

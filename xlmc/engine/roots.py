@@ -61,10 +61,10 @@ class Roots:
 
     def chosen(self, n: int, *, last: bool = False) -> Floats:
         """`(n,)` the first root of each trial, or the last; NaN where it has none."""
-        found = np.full(n, np.nan)
+        values = np.full(n, np.nan)
         order = slice(None) if last else slice(None, None, -1)
-        found[self.trials[order]] = self.values[order]  # of a trial that stands several times, the last one stays
-        return found
+        values[self.trials[order]] = self.values[order]  # of a trial that stands several times, the last one stays
+        return values
 
 
 def find_roots(function: Function, low: Floats, high: Floats) -> Roots:
@@ -113,7 +113,7 @@ def _scan(
     function: Function, trials: Trials | None, low: Floats, high: Floats
 ) -> tuple[_Brackets, tuple[Trials, Floats]]:
     """Look at the range of some trials, None for all: the brackets, and the points where the function is exactly 0."""
-    found: list[tuple[Any, ...]] = []
+    result: list[tuple[Any, ...]] = []
     numbers = np.arange(low.size) if trials is None else trials
     width = high - low
     left, at, before = low, np.empty(low.size), function(low, trials)
@@ -133,11 +133,11 @@ def _scan(
         here = np.flatnonzero(above != positive)
         if here.size:
             here = here[np.sign(before[here]) * np.sign(values[here]) < 0.0]  # none of a zero, and of no number
-            found.append((numbers[here], left[here], at[here], before[here], values[here]))
+            result.append((numbers[here], left[here], at[here], before[here], values[here]))
         left, at = at, np.empty(low.size) if left is low else left
         before, positive = values, above
-    found = found or [(numbers[:0], *[low[:0]] * 4)]
-    where, *columns = map(np.concatenate, zip(*found, strict=True))
+    result = result or [(numbers[:0], *[low[:0]] * 4)]
+    where, *columns = map(np.concatenate, zip(*result, strict=True))
     trials_of_zeros, points = map(np.concatenate, zip(*zeros, strict=True))
     return _Brackets(where, *columns), (trials_of_zeros, points)
 
@@ -200,7 +200,7 @@ def _narrow(function: Function, brackets: _Brackets) -> tuple[Floats, Floats]:
     A bracket in which the function has no number somewhere gives NaN.
     """
     trials, count = brackets.trials, brackets.trials.size
-    found, remainder = np.full(count, np.nan), np.full(count, np.inf)
+    values, remainder = np.full(count, np.nan), np.full(count, np.inf)
     left, share = np.arange(count), np.full(count, 0.5)
     x1, f1, x2, f2 = brackets.high, brackets.at_high, brackets.low, brackets.at_low
     for _ in range(_MOST_ROUNDS):
@@ -221,11 +221,11 @@ def _narrow(function: Function, brackets: _Brackets) -> tuple[Floats, Floats]:
         if (done | lost).any():
             ended = done & ~lost
             worse = np.where(value == 0.0, 0.0, np.where(nearer, f2, f1))  # of a jump, one end may be near 0 by chance
-            found[left[ended]], remainder[left[ended]] = best[ended], worse[ended]
+            values[left[ended]], remainder[left[ended]] = best[ended], worse[ended]
             on = ~(done | lost)
             left, x1, f1, x2, f2, x3, f3, least = (e[on] for e in (left, x1, f1, x2, f2, x3, f3, least))
         xi, phi = (x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2)
         smooth = (phi * phi < xi) & ((1.0 - phi) ** 2 < 1.0 - xi)
         step = f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
         share = np.clip(np.where(smooth, step, 0.5), least, 1.0 - least)
-    return found, remainder
+    return values, remainder

@@ -45,18 +45,18 @@ def faults_of(lowering: Lowering, unknown: str) -> dict[Cell, str]:
         lowering: with the formulas in it.
         unknown: why one that can be computed has no value.
     """
-    found: dict[Cell, str] = {}
+    result: dict[Cell, str] = {}
     for cell in lowering.graph.formulas:
         formula = lowering.graph.workbook.content(cell).formula
         if cell in lowering.faults:
-            found[cell] = lowering.faults[cell].message
+            result[cell] = lowering.faults[cell].message
         elif lowering.value(cell) is None:
-            found[cell] = unknown
+            result[cell] = unknown
         elif formula is not None and formula.dynamic and formula.array is not None:
             size = size_of(lowering.dag, lowering.array(cell)) or (1, 1)
             if size != (formula.array.rows, formula.array.columns):
-                found[cell] = "the formula spills into another area than when the file was saved"
-    return found
+                result[cell] = "the formula spills into another area than when the file was saved"
+    return result
 
 
 def array_of(workbook: Workbook, cell: Cell) -> Iterable[Cell]:

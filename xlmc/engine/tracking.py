@@ -177,11 +177,11 @@ class _Part:
             assert not isinstance(node, Constant)
             try:
                 if isinstance(node, Input):
-                    found = Value.of_numbers(inputs[node.name])
+                    value = Value.of_numbers(inputs[node.name])
                 else:
-                    found = apart(evaluate_node(node, values))
-                values[node_id] = found
-                sizes[node_id] = found.nbytes
+                    value = apart(evaluate_node(node, values))
+                values[node_id] = value
+                sizes[node_id] = value.nbytes
                 live += sizes[node_id]
                 in_arrays += self._in_arrays(node_id, sizes[node_id])
                 ask_for_live(live)

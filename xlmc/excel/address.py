@@ -187,7 +187,7 @@ def parse_address(text: str, sheet: str | None = None) -> Cell | Area:
     corners = [_A1.fullmatch(part) for part in tail.split(":")]
     if len(corners) > 2 or not all(corners):
         raise ValueError(f"{text!r} is not a cell or an area")
-    positions = [(int(found[2]), column_number(found[1])) for found in corners if found]
+    positions = [(int(match[2]), column_number(match[1])) for match in corners if match]
     if any(row > MAX_ROW or column > MAX_COLUMN for row, column in positions):
         raise ValueError(f"{text!r} lies outside the sheet")
     if len(positions) == 1:

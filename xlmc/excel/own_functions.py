@@ -221,9 +221,9 @@ def _public(module: ModuleType, path: Path) -> list[tuple[str, Callable[..., Any
     """
     listed = getattr(module, "__all__", None)
     if listed is None:
-        found = ((name, each) for name, each in vars(module).items() if not name.startswith("_"))
+        result = ((name, each) for name, each in vars(module).items() if not name.startswith("_"))
         return [
-            (name, each) for name, each in found if getattr(each, "__module__", "") == module.__name__ and _is(each)
+            (name, each) for name, each in result if getattr(each, "__module__", "") == module.__name__ and _is(each)
         ]
     wrong = next((name for name in listed if not _is(getattr(module, name, None))), None)
     if wrong is not None:
@@ -231,8 +231,8 @@ def _public(module: ModuleType, path: Path) -> list[tuple[str, Callable[..., Any
     return [(name, getattr(module, name)) for name in listed]
 
 
-def _is(found: object) -> bool:
-    return callable(found) and not isinstance(found, type)
+def _is(value: object) -> bool:
+    return callable(value) and not isinstance(value, type)
 
 
 def _row(body: _Body) -> Function:
@@ -246,13 +246,13 @@ def _parameters(function: Callable[..., Any]) -> tuple[Parameter, ...]:
         given = list(inspect.signature(function).parameters.values())
     except (TypeError, ValueError):  # a function of another language that does not tell
         return (Cells(repeat=True, default=None),)
-    found = []
+    parameters = []
     for each in given:
         if each.kind is each.VAR_POSITIONAL:
-            found.append(Cells(repeat=True, default=None))
+            parameters.append(Cells(repeat=True, default=None))
         elif each.kind in (each.POSITIONAL_ONLY, each.POSITIONAL_OR_KEYWORD):
-            found.append(Cells if each.default is each.empty else Cells(default=None))
-    return tuple(found)
+            parameters.append(Cells if each.default is each.empty else Cells(default=None))
+    return tuple(parameters)
 
 
 def _body_of(row: Function) -> _Body:
@@ -299,11 +299,11 @@ class _Body:
         good = np.flatnonzero(errors == 0)
         if not good.size:
             return Value.of_errors(errors)
-        found = self._of_good(values, n, good)
+        result = self._of_good(values, n, good)
         if good.size == n:
-            return found
+            return result
         spread = np.full(n, None, object)
-        spread[good] = found.objects()
+        spread[good] = result.objects()
         spread[errors > 0] = [ErrorCode(int(code)) for code in errors[errors > 0]]
         return from_objects(spread)
 
@@ -316,12 +316,12 @@ class _Body:
             given[:] = [self._plain(self._called(row)) for row in rows]
             return from_objects(given)
         arguments = [_array(value, n)[good] for value in values]
-        found = self._result(self._called(arguments), good.size)
+        result = self._result(self._called(arguments), good.size)
         if not self.tried and good.size > _TRIED:
             again = self._result(self._called([each[:_TRIED].copy() for each in arguments]), _TRIED)
-            self._refuse_mixing(found.objects()[:_TRIED], again.objects())
+            self._refuse_mixing(result.objects()[:_TRIED], again.objects())
             self.tried = True
-        return found
+        return result
 
     def _called(self, arguments: Sequence[Any]) -> Any:
         try:
@@ -337,9 +337,9 @@ class _Body:
         shapes = {f"({', '.join(map(str, each.shape))}{',' * (each.ndim == 1)})" for each in arguments}
         return f"arrays of the shape {' and '.join(sorted(shapes))}, a value for each trial"
 
-    def _refuse_mixing(self, found: NDArray[Any], again: NDArray[Any]) -> None:
+    def _refuse_mixing(self, values: NDArray[Any], again: NDArray[Any]) -> None:
         """Refuse a function that gives other values for the same trials when it is called with fewer."""
-        for first, second in zip(found.tolist(), again.tolist(), strict=True):
+        for first, second in zip(values.tolist(), again.tolist(), strict=True):
             same = first == second
             if isinstance(first, float) and isinstance(second, float):
                 same = bool(np.isclose(first, second, rtol=1e-9, atol=0.0, equal_nan=True))
@@ -350,19 +350,19 @@ class _Body:
 
     def _result(self, given: ArrayLike | None, n: int) -> Value:
         """Return the value of what a vectorised function gives for n trials."""
-        found = _texts(given)
-        if found is None:
+        values = _texts(given)
+        if values is None:
             if given is None:
                 raise self._error("gives nothing", "end it with return and the result")
             try:
-                found = numbers_given(given)
+                values = numbers_given(given)
             except ValueError as error:
                 raise self._error(str(error), "give an array of numbers, of TRUE and FALSE, or of texts") from None
-        if found.shape not in ((), (1,), (n,)):
-            message = f"gives the shape {found.shape} for {n} trials"
+        if values.shape not in ((), (1,), (n,)):
+            message = f"gives the shape {values.shape} for {n} trials"
             hint = "give one value for each trial: use numpy.where in place of if, or write @scalar above the function"
             raise self._error(message, hint)
-        spread = np.array(np.broadcast_to(found, (n,)))
+        spread = np.array(np.broadcast_to(values, (n,)))
         if spread.dtype == object:
             return from_objects(spread)
         if spread.dtype == bool:
@@ -418,10 +418,10 @@ def _array(value: Value, n: int) -> NDArray[Any]:
 def _objects(value: Value, n: int) -> NDArray[Any]:
     """Return a plain value for each trial, a blank as 0; of a range an array `(r, c)` for each trial."""
     if value.numbers.ndim == 1:
-        found = (
+        values = (
             np.where(value.kinds == BLANK, 0.0, value.objects()) if (value.kinds == BLANK).any() else value.objects()
         )
-        return np.array(np.broadcast_to(found, (n,)), object)
+        return np.array(np.broadcast_to(values, (n,)), object)
     rows = np.empty(n, object)
     numbers = None if (value.kinds == TEXT).any() else value.numbers
     spread = np.broadcast_to(value.objects() if numbers is None else numbers, (n, *value.shape[1:]))
@@ -435,17 +435,17 @@ def _texts(given: object) -> NDArray[Any] | None:
     if isinstance(given, np.ma.MaskedArray):
         return None
     try:
-        found = np.asarray(given)
+        values = np.asarray(given)
     except ValueError:
         return None
-    if found.dtype.kind == "U":
-        return found.astype(object)
-    if found.dtype != object or not any(isinstance(each, str) for each in found.ravel()):
+    if values.dtype.kind == "U":
+        return values.astype(object)
+    if values.dtype != object or not any(isinstance(each, str) for each in values.ravel()):
         return None
-    if not all(isinstance(each, str | bool | Real) for each in found.ravel()):
+    if not all(isinstance(each, str | bool | Real) for each in values.ravel()):
         return None
-    return np.array([each if isinstance(each, str | bool) else float(each) for each in found.ravel()], object).reshape(
-        found.shape
+    return np.array([each if isinstance(each, str | bool) else float(each) for each in values.ravel()], object).reshape(
+        values.shape
     )
 
 
@@ -459,15 +459,15 @@ def numbers_given(given: ArrayLike) -> NDArray[Any]:
     if isinstance(given, np.ma.MaskedArray):
         raise ValueError("gives a masked array, and not result.filled(numpy.nan)")
     try:
-        found = np.asarray(given)
-        if found.dtype.kind == "O" and all(isinstance(each, Real) for each in found.ravel()):
-            found = found.astype(np.float64)
+        values = np.asarray(given)
+        if values.dtype.kind == "O" and all(isinstance(each, Real) for each in values.ravel()):
+            values = values.astype(np.float64)
     except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"gives no array of numbers ({error})") from error
-    if found.dtype.kind not in "biuf":
+    if values.dtype.kind not in "biuf":
         kinds = {"U": "texts", "S": "bytes", "M": "dates", "m": "spans of time", "c": "complex numbers"}
-        raise ValueError(f"gives {kinds.get(found.dtype.kind, 'objects')} instead of real numbers")
-    return found
+        raise ValueError(f"gives {kinds.get(values.dtype.kind, 'objects')} instead of real numbers")
+    return values
 
 
 def _short(value: object) -> str:

@@ -78,9 +78,9 @@ def signs() -> tuple[str, str]:
 
 def _styled(text: str) -> str:
     """Write a number that Python wrote, `1,234.5`, with the signs of the context."""
-    if (found := _SIGNS.get()) == _USUAL:
+    if (pair := _SIGNS.get()) == _USUAL:
         return text
-    return text.translate(dict(zip(map(ord, _USUAL), found, strict=True)))
+    return text.translate(dict(zip(map(ord, _USUAL), pair, strict=True)))
 
 
 def styled_text(value: float | Decimal, form: str) -> str:

@@ -31,8 +31,8 @@ def save(
     from xlmc.outputs.sheets.save import save as save_sheets
     from xlmc.outputs.sheets.trials_sheet import TRIAL_ROWS
 
-    found = further_sections(simulation, "sheets")
-    further = {name: _sheet(heading, blocks) for name, (heading, blocks) in found.items()}
+    result = further_sections(simulation, "sheets")
+    further = {name: _sheet(heading, blocks) for name, (heading, blocks) in result.items()}
     return save_sheets(simulation, path, command=command, rows=rows or TRIAL_ROWS, overwrite=overwrite, further=further)
 
 

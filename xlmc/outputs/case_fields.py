@@ -57,13 +57,13 @@ def case_of(workbook: Workbook, given: Mapping[str, str]) -> Case:
         DefinitionError: the table has another number of columns, or a field twice, or there are two tables.
         SimulationError: a field is given without a name.
     """
-    found: dict[str, CellValue] = dict(_rows(workbook))
+    result: dict[str, CellValue] = dict(_rows(workbook))
     for name, text in given.items():
         if not name.strip():
             raise SimulationError("a field of the case has no name", hint="Give it as 'Case number=2026-17'")
-        found[_field(name)] = label(text.strip())
-    dated = _day(found.get("Date"), workbook.date1904)
-    fields = {name: as_text(found[name]) for name in (*FIELDS, *found) if found.get(name) is not None}
+        result[_field(name)] = label(text.strip())
+    dated = _day(result.get("Date"), workbook.date1904)
+    fields = {name: as_text(result[name]) for name in (*FIELDS, *result) if result.get(name) is not None}
     if dated is not None:
         fields["Date"] = f"{dated.day} {MONTHS[dated.month - 1]} {dated.year}"
     return Case({name: text for name, text in fields.items() if text}, dated)
@@ -78,15 +78,15 @@ def fields_from(given: Iterable[str]) -> dict[str, str]:
     Raises:
         SimulationError: one has no equals sign, or no name before it.
     """
-    found = {}
+    result = {}
     for each in given:
         name, equals, text = each.partition("=")
         if not (equals and name.strip()):
             raise SimulationError(
                 f"a field of the case is not {label(each)!r}", hint="Give it as 'Case number=2026-17'"
             )
-        found[name.strip()] = text.strip()
-    return found
+        result[name.strip()] = text.strip()
+    return result
 
 
 def _rows(workbook: Workbook) -> Iterable[tuple[str, CellValue]]:

@@ -111,30 +111,30 @@ def safe_heading(name: str) -> str:
 
 
 def _writer(path: Path) -> Callable[[RunResult, BinaryIO, str | None], None]:
-    found = {".csv": _write_csv, ".parquet": _write_parquet}.get(path.suffix.casefold())
-    if found is None:
+    result = {".csv": _write_csv, ".parquet": _write_parquet}.get(path.suffix.casefold())
+    if result is None:
         hint = f"Name it {path.stem + '.csv'!r} or {path.stem + '.parquet'!r}"
         raise WorkbookError("trials are extracted to a .csv or a .parquet file", where=path, hint=hint)
-    return found
+    return result
 
 
 def _columns(simulation: RunResult) -> list[Column]:
     """In two loops the outer draw; assumptions, then forecasts."""
     forecasts = {forecast.name for forecast in simulation.model.forecasts}
-    found = []
+    columns = []
     if simulation.plan.outer:
         names = {*forecasts, *(a.name for a in simulation.model.live)}
         name = OUTER_DRAW if OUTER_DRAW not in names else f"{OUTER_DRAW} of the trial"
-        found.append(Column(name, "outer draw", "", "", simulation.trial_index // simulation.plan.size))
-    found += [
+        columns.append(Column(name, "outer draw", "", "", simulation.trial_index // simulation.plan.size))
+    columns += [
         Column(assumption_heading(a.name, forecasts), "assumption", a.units, str(a.cell), values)
         for a in simulation.model.live
         for values in [simulation.inputs[a.name]]
     ]
     if simulation.weighting is not None:
-        name = weight_heading({*forecasts, *(each.name for each in found)})
-        found.append(Column(name, "weight", "", "", simulation.weighting.weights))
-    return found + [
+        name = weight_heading({*forecasts, *(each.name for each in columns)})
+        columns.append(Column(name, "weight", "", "", simulation.weighting.weights))
+    return columns + [
         Column(
             forecast_heading(f.name),
             "forecast",
@@ -183,10 +183,10 @@ def _write_csv(simulation: RunResult, file: BinaryIO, command: str | None) -> No
 
 def _fields(values: Values, labels: Sequence[str] | None) -> list[float | str]:
     """Numbers, which the writer gives their shortest exact text, or texts; nothing where there is none."""
-    found: list[Any] = values.tolist()
+    result: list[Any] = values.tolist()
     if labels is not None:
-        return ["" if value != value else safe_heading(labels[int(value)]) for value in found]
-    return ["" if value != value else value for value in found] if np.isnan(values).any() else found
+        return ["" if value != value else safe_heading(labels[int(value)]) for value in result]
+    return ["" if value != value else value for value in result] if np.isnan(values).any() else result
 
 
 def _parquet_type(pa: Any, column: Column) -> Any:

@@ -181,15 +181,15 @@ def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | N
     """Return what the filters of a run did to one of its assumptions; None if the assumption is not drawn."""
     if assumption not in simulation.inputs:
         return None
-    found = _FOUND.setdefault(simulation, {})
-    if assumption not in found:
+    result = _FOUND.setdefault(simulation, {})
+    if assumption not in result:
         weights = None if simulation.weighting is None else simulation.weighting.weights
         replicate = partial(simulation.plan.replicate_of, simulation.trial_index)
-        found[assumption] = FilterEffect(
+        result[assumption] = FilterEffect(
             partial(_marginal_of, simulation.prior, assumption, lambda: None, None, told_of_prior(simulation)),
             partial(_marginal_of, simulation.inputs, assumption, replicate, weights, None),
         )
-    return found[assumption]
+    return result[assumption]
 
 
 def _marginal_of(
@@ -213,11 +213,11 @@ def shapes_of(simulation: RunResult, assumption: str) -> Shapes | None:
         return None
     if all(each.name != assumption for each in simulation.model.assumptions[:DRAWN]):
         return None
-    found = _SHAPES.setdefault(simulation, {})
-    if assumption not in found:
+    result = _SHAPES.setdefault(simulation, {})
+    if assumption not in result:
         weighting = simulation.weighting
-        found[assumption] = shapes(prior, accepted, None if weighting is None else weighting.weights)
-    return found[assumption]
+        result[assumption] = shapes(prior, accepted, None if weighting is None else weighting.weights)
+    return result[assumption]
 
 
 def filter_effect(

@@ -127,9 +127,9 @@ class Histogram:
             return (self.inside + self.outside)[:, np.newaxis]
         starts = self.edges[:, np.newaxis] + np.arange(p) * (self.width / p)
         edges = np.append(starts.ravel(), self.upper_edges[-1])
-        found = np.diff(np.searchsorted(x, edges - (0.0 if self.grid is None else _ON_GRID * self.grid), side="left"))
+        values = np.diff(np.searchsorted(x, edges - (0.0 if self.grid is None else _ON_GRID * self.grid), side="left"))
         release(x)
-        return found.reshape(-1, p)
+        return values.reshape(-1, p)
 
     def _parts(self, sample: Sample, most: int) -> int:
         """Return in how many parts a bin can be divided so that all are alike."""
@@ -420,17 +420,17 @@ class Figure:
         """The answer in words."""
         row = self.answer
         units = f" {row.units}" if row.units else ""
-        said = (
+        message = (
             f"mean {answer_text(row)}{units}; the central {percent(row.share)} of "
             f"{counted_text(row.trials, 'accepted trial')} lie from {central_text(row)}{units}"
         )
         if row.yes is not None:
-            said = f"yes in {answer_text(row)} of {counted_text(row.trials, 'accepted trial')}, else no"
+            message = f"yes in {answer_text(row)} of {counted_text(row.trials, 'accepted trial')}, else no"
         if row.categories:
             shares = [f"{text or '(empty)'} {share_text(share)}" for text, share in row.categories.items()]
             more = f"; {count_text(len(shares) - _MOST_SAID)} more texts" if len(shares) > _MOST_SAID else ""
-            said = f"{'; '.join(shares[:_MOST_SAID])}{more}; of {counted_text(row.trials, 'accepted trial')}"
-        return said
+            message = f"{'; '.join(shares[:_MOST_SAID])}{more}; of {counted_text(row.trials, 'accepted trial')}"
+        return message
 
     @property
     def caption(self) -> str:
@@ -460,13 +460,13 @@ def figures_of(simulation: RunResult, names: Collection[str] | None = None) -> l
         simulation: the finished run.
         names: of the forecasts; by default all.
     """
-    found: list[Figure] = []
+    figures: list[Figure] = []
     for row in summarise(simulation, names):
         sample = simulation.results[row.name].sample
         bins = bars_of(row, sample) if sample.n else None
         if bins is not None:
-            found.append(Figure(len(found) + 1, row, bins))
-    return found
+            figures.append(Figure(len(figures) + 1, row, bins))
+    return figures
 
 
 def varying(figures: Sequence[Figure]) -> list[Figure]:

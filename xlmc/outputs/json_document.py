@@ -190,25 +190,25 @@ def scenario_json(each: ScenarioAnswers) -> Json:
         "accepted": each.run.accepted,
         "acceptance": estimate_json(each.acceptance),
         "acceptance_difference": _estimate_or_none(each.acceptance_difference),
-        "forecasts": [_scenario_forecast(found) for found in each.forecasts],
+        "forecasts": [_scenario_forecast(answer) for answer in each.forecasts],
     }
 
 
-def _scenario_forecast(found: ForecastAnswer) -> Json:
-    answers = {"mean": found.mean, "low": found.low, "high": found.high, "above": found.above}
-    asked = found.forecast
+def _scenario_forecast(answer: ForecastAnswer) -> Json:
+    answers = {"mean": answer.mean, "low": answer.low, "high": answer.high, "above": answer.above}
+    asked = answer.forecast
     described = {"name": asked.name, "units": asked.units, "share": asked.central, "threshold": asked.threshold}
     return described | {
         key: {
             "estimate": _estimate_or_none(value),
-            "difference": _estimate_or_none(found.differences.get(key)),
+            "difference": _estimate_or_none(answer.differences.get(key)),
         }
         for key, value in answers.items()
     }
 
 
-def _estimate_or_none(found: Estimate | None) -> _EstimateJson | None:
-    return None if found is None else estimate_json(found)
+def _estimate_or_none(estimate: Estimate | None) -> _EstimateJson | None:
+    return None if estimate is None else estimate_json(estimate)
 
 
 def _trials(simulation: RunResult) -> Json:
@@ -225,9 +225,9 @@ def _trials(simulation: RunResult) -> Json:
 
 
 def _forecast(result: ForecastResult, base: BaseCase | None) -> Json:
-    definition, found = result.definition, result.statistics
-    low, high = found.central
-    above = found.probability_above
+    definition, description = result.definition, result.statistics
+    low, high = description.central
+    above = description.probability_above
     return {
         "name": definition.name,
         "cell": str(definition.cell),
@@ -238,9 +238,11 @@ def _forecast(result: ForecastResult, base: BaseCase | None) -> Json:
         "yes": None if result.yes is None else estimate_json(result.yes),
         "categories": [{"text": text, "share": estimate_json(each)} for text, each in result.categories.items()],
         "role": definition.role.value,
-        "trials": found.trials,
-        "statistics": {name: estimate_json(getattr(found, name)) for name in STATISTICS},
-        "percentiles": [{"percent": percent, **estimate_json(each)} for percent, each in found.percentiles.items()],
+        "trials": description.trials,
+        "statistics": {name: estimate_json(getattr(description, name)) for name in STATISTICS},
+        "percentiles": [
+            {"percent": percent, **estimate_json(each)} for percent, each in description.percentiles.items()
+        ],
         "central_range": {"share": definition.central, "low": estimate_json(low), "high": estimate_json(high)},
         "certainty": None
         if above is None
@@ -269,27 +271,27 @@ def _filter(simulation: RunResult, index: int, each: Filter) -> Json:
     }
 
 
-def _weights(found: Weighting | None) -> Json | None:
-    if found is None:
+def _weights(weighting: Weighting | None) -> Json | None:
+    if weighting is None:
         return None
-    described = {"mean": found.mean, "largest": found.largest, "effective_trials": found.effective}
+    described = {"mean": weighting.mean, "largest": weighting.largest, "effective_trials": weighting.effective}
     return {**described, "left_out": UNWEIGHTED}
 
 
-def _evidence(found: Agreement) -> Json:
+def _evidence(agreement: Agreement) -> Json:
     return {
-        "verdict": found.verdict.value,
-        "sentence": found.sentence,
-        "remarks": found.remarks,
-        "trials": found.trials,
-        "past_filters": found.past,
-        "effective_trials": found.effective,
-        "kept_together": estimate_json(found.together),
-        "ratio": estimate_json(found.ratio),
-        "z_of_best_trial": found.best_z,
-        "items": [_item(each) for each in found.items],
-        "pressed": [_as_json(each) for each in found.pressed],
-        "answers": [_evidence_answer(each) for each in found.answers],
+        "verdict": agreement.verdict.value,
+        "sentence": agreement.sentence,
+        "remarks": agreement.remarks,
+        "trials": agreement.trials,
+        "past_filters": agreement.past,
+        "effective_trials": agreement.effective,
+        "kept_together": estimate_json(agreement.together),
+        "ratio": estimate_json(agreement.ratio),
+        "z_of_best_trial": agreement.best_z,
+        "items": [_item(each) for each in agreement.items],
+        "pressed": [_as_json(each) for each in agreement.pressed],
+        "answers": [_evidence_answer(each) for each in agreement.answers],
     }
 
 
@@ -328,7 +330,7 @@ def _check(each: CheckResult) -> Json:
         "name": each.name,
         "cell": str(each.cell),
         "because": each.because,
-        "base": each.base.found,
+        "base": each.base.content,
         "holds": each.holds,
         "trials": each.trials,
         "failed": each.failed,
@@ -353,23 +355,23 @@ def _assumption(simulation: RunResult, each: Assumption) -> Json:
         "shift": None,
         "narrowing": None,
     }
-    found = filter_effect_of(simulation, each.name)
-    if found is None:
+    effect = filter_effect_of(simulation, each.name)
+    if effect is None:
         return entry
     return entry | {
-        "prior": _marginal(found.prior),
-        "accepted": _marginal(found.accepted),
-        "shift": estimate_json(found.shift),
-        "narrowing": estimate_json(found.narrowing),
+        "prior": _marginal(effect.prior),
+        "accepted": _marginal(effect.accepted),
+        "shift": estimate_json(effect.shift),
+        "narrowing": estimate_json(effect.narrowing),
     }
 
 
-def _marginal(found: Marginal) -> Json:
+def _marginal(marginal: Marginal) -> Json:
     return {
-        "trials": found.trials,
-        "mean": estimate_json(found.mean),
-        "standard_deviation": estimate_json(found.standard_deviation),
-        "percentiles": [{"percent": percent, **estimate_json(each)} for percent, each in found.percentiles.items()],
+        "trials": marginal.trials,
+        "mean": estimate_json(marginal.mean),
+        "standard_deviation": estimate_json(marginal.standard_deviation),
+        "percentiles": [{"percent": percent, **estimate_json(each)} for percent, each in marginal.percentiles.items()],
     }
 
 
@@ -393,10 +395,10 @@ def _pair(pair: Pair) -> Json:
 
 def _sensitivity(simulation: RunResult) -> Json:
     """Return what the detailed forecasts depend on; how many others there are only where there are some."""
-    found: Json = _as_json(sensitivities(simulation))
-    if not found["omitted_forecasts"]:
-        del found["omitted_forecasts"]
-    return found
+    result: Json = _as_json(sensitivities(simulation))
+    if not result["omitted_forecasts"]:
+        del result["omitted_forecasts"]
+    return result
 
 
 def _as_json(value: Any) -> Any:
@@ -411,11 +413,11 @@ def _as_json(value: Any) -> Any:
         return value
     if isinstance(value, tuple | list):
         return [_as_json(each) for each in value]
-    found = ((field.name, getattr(value, field.name)) for field in fields(value))
-    return {name: _as_json(each) for name, each in found if not isinstance(each, Form)}
+    result = ((field.name, getattr(value, field.name)) for field in fields(value))
+    return {name: _as_json(each) for name, each in result if not isinstance(each, Form)}
 
 
-def estimate_json(found: Estimate) -> _EstimateJson:
+def estimate_json(estimate: Estimate) -> _EstimateJson:
     """`{"value": …, "error": …, "low": …, "high": …}`, with a `reason` where one of them is null.
 
     >>> from xlmc.montecarlo.statistics import Estimate
@@ -424,11 +426,11 @@ def estimate_json(found: Estimate) -> _EstimateJson:
     >>> estimate_json(Estimate(3.0))["reason"]
     'no standard error can be given'
     """
-    low, high = found.interval or (None, None)
-    numbers = [finite(number) for number in (found.value, found.error, low, high)]
+    low, high = estimate.interval or (None, None)
+    numbers = [finite(number) for number in (estimate.value, estimate.error, low, high)]
     entry: _EstimateJson = dict(zip(("value", "error", "low", "high"), numbers, strict=True))
     if None in numbers:
-        entry["reason"] = _reason(numbers[0], numbers[1], found.interval is not None)
+        entry["reason"] = _reason(numbers[0], numbers[1], estimate.interval is not None)
     return entry
 
 

@@ -129,10 +129,10 @@ def _nothing() -> SimulationError:
 
 def _one(simulation: RunResult, name: str | None) -> Drawn:
     """Return the forecast of a name, or the first that can be drawn."""
-    found = figures_of(simulation, None if name is None else [forecast_named(simulation.model, name)])
-    if not found:
+    figures = figures_of(simulation, None if name is None else [forecast_named(simulation.model, name)])
+    if not figures:
         raise _nothing()
-    return found[0]
+    return figures[0]
 
 
 def _number(simulation: RunResult, name: str | None, kind: str, *, shares: bool = False) -> Drawn:
@@ -147,14 +147,14 @@ def _number(simulation: RunResult, name: str | None, kind: str, *, shares: bool 
     Raises:
         SimulationError: the forecast has another kind of answers, or all have.
     """
-    found = figures_of(simulation, None if name is None else [forecast_named(simulation.model, name)])
-    if not found:
+    figures = figures_of(simulation, None if name is None else [forecast_named(simulation.model, name)])
+    if not figures:
         raise _nothing()
-    fit = [each for each in found if not each.answer.categories and (shares or each.answer.yes is None)]
+    fit = [each for each in figures if not each.answer.categories and (shares or each.answer.yes is None)]
     if not fit:
-        what = "texts" if found[0].answer.categories else "yes or no"
+        what = "texts" if figures[0].answer.categories else "yes or no"
         hint = 'Draw its shares: kind="histogram"'
-        raise SimulationError(f"The answers of {found[0].answer.name!r} are {what}: no {kind} shows them", hint=hint)
+        raise SimulationError(f"The answers of {figures[0].answer.name!r} are {what}: no {kind} shows them", hint=hint)
     return fit[0]
 
 
@@ -172,8 +172,8 @@ def _tornado(axes: Axes, simulation: RunResult, name: str | None) -> None:
     """Each assumption moved alone from its 10th to its 90th percentile, the widest bar on top."""
     each, model = _number(simulation, name, "tornado", shares=True), simulation.model
     index = next(i for i, forecast in enumerate(model.forecasts) if forecast.name == each.answer.name)
-    found = one_at_a_time(model, [a.name for a in model.live], [index], _BARS)
-    bars, base = [bar for bar in found.bars[index] if bar.low is not None and bar.high is not None], found.base[index]
+    result = one_at_a_time(model, [a.name for a in model.live], [index], _BARS)
+    bars, base = [bar for bar in result.bars[index] if bar.low is not None and bar.high is not None], result.base[index]
     if not bars or base is None:
         hint = "Look at the base case: xlmc check says which cell is an error there"
         raise SimulationError(f"{each.answer.name!r} has no number at the base case", hint=hint)
@@ -249,10 +249,10 @@ def _before_after(axes: Axes, simulation: RunResult, name: str | None) -> None:
         raise _nothing()
     weights = None if simulation.weighting is None else simulation.weighting.weights[: simulation.kept_inputs]
     chosen = names[name_key(name)] if name else max(simulation.inputs, key=lambda each: _moved(simulation, each))
-    found = shapes(simulation.prior[chosen], simulation.inputs[chosen], weights)
-    if found is None:
+    result = shapes(simulation.prior[chosen], simulation.inputs[chosen], weights)
+    if result is None:
         raise SimulationError(f"the draws of {chosen!r} have no shape", hint="They are one value, or too far apart")
-    edges, before, accepted = (tuple(map(float, each)) for each in (found.edges, found.before, found.accepted))
+    edges, before, accepted = (tuple(map(float, each)) for each in (result.edges, result.before, result.accepted))
     units = next(a.units for a in simulation.model.assumptions if a.name == chosen)
     title = f"{short(chosen)}, before and after the filters"
     draw_on(axes, Chart(title, units or "value", Shape(edges, before, accepted), title))
@@ -313,12 +313,12 @@ def _write_form(axis: Axis, form: Form) -> None:
         if form.kind is Kind.DATE:
             low, high = axis.get_view_interval()
             axis.set_major_locator(MultipleLocator(form.rounded_width(max((high - low) / _STEPS, 1e-5))))
-        found = signs()  # matplotlib asks for the texts later
-        axis.set_major_formatter(lambda value, _: _tick(form, value, found))
+        pair = signs()  # matplotlib asks for the texts later
+        axis.set_major_formatter(lambda value, _: _tick(form, value, pair))
 
 
-def _tick(form: Form, value: float, found: tuple[str, str]) -> str:
-    with in_signs(*found):
+def _tick(form: Form, value: float, pair: tuple[str, str]) -> str:
+    with in_signs(*pair):
         return form.number(float(f"{value:.12g}")).replace("$", r"\$")  # which would begin a formula
 
 

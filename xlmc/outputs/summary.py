@@ -246,8 +246,8 @@ def with_units(name: str, units: str) -> str:
 
 def mean_heading(rows: Sequence[SummaryRow]) -> str:
     """`Mean`; of yes/no answers and texts `Share`; `Mean or share` where forecasts have either."""
-    found = {row.is_share for row in rows}
-    return "Mean or share" if len(found) > 1 else "Share" if True in found else "Mean"
+    result = {row.is_share for row in rows}
+    return "Mean or share" if len(result) > 1 else "Share" if True in result else "Mean"
 
 
 def range_heading(rows: Sequence[SummaryRow]) -> str:
@@ -409,11 +409,11 @@ def shares_of(answer: SummaryRow | ForecastResult) -> Mapping[str, Estimate]:
 
 def frequent_texts(shares: Mapping[str, Estimate]) -> tuple[dict[str, Estimate], str, float]:
     """Return the texts that a table tells, what it calls all the others, and their share; ("", 0) without others."""
-    told = dict([*shares.items()][:_MOST_TEXTS])
-    others = len(shares) - len(told)
+    messages = dict([*shares.items()][:_MOST_TEXTS])
+    others = len(shares) - len(messages)
     if others == 0:
-        return told, "", 0.0
-    return told, f"{count_text(others)} rarer texts", 1.0 - math.fsum(share.value for share in told.values())
+        return messages, "", 0.0
+    return messages, f"{count_text(others)} rarer texts", 1.0 - math.fsum(share.value for share in messages.values())
 
 
 _MOST_TEXTS: Final = 20

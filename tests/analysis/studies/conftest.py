@@ -32,5 +32,5 @@ def unknown_mean(tmp_path_factory):
     spec.loader.exec_module(script)
     path = tmp_path_factory.mktemp("unknown") / "unknown-mean.xlsx"
     script.write(path)
-    found = xlmc.uncertainty(xlmc.load(path), outer=40, inner=50, seed=5)
-    return path, [band.low.value for band in found["Speed"].bands]
+    result = xlmc.uncertainty(xlmc.load(path), outer=40, inner=50, seed=5)
+    return path, [band.low.value for band in result["Speed"].bands]

@@ -53,19 +53,19 @@ def expected_profit(order, price):
 
 
 def test_means_and_differences_are_those_of_the_closed_form(book):
-    found = xlmc.decide(xlmc.load(book()), trials=20_000)
-    assert len(found.combinations) == 10
-    assert [each.values for each in found.combinations[:3]] == [(20, 5), (20, 6), (30, 5)]
+    result = xlmc.decide(xlmc.load(book()), trials=20_000)
+    assert len(result.combinations) == 10
+    assert [each.values for each in result.combinations[:3]] == [(20, 5), (20, 6), (30, 5)]
     base = expected_profit(50, 5)
-    for each in found.combinations:
+    for each in result.combinations:
         (answer,) = each.answers.forecasts
         exact = expected_profit(*each.values)
         assert abs(answer.mean.value - exact) < 4 * answer.mean.error
         change = answer.differences["mean"]
         assert abs(change.value - (exact - base)) < 4 * change.error + 1e-12
-        alone = math.hypot(answer.mean.error, found.base.forecasts[0].mean.error)
+        alone = math.hypot(answer.mean.error, result.base.forecasts[0].mean.error)
         assert change.error < alone  # paired
-    same = next(each for each in found.combinations if each.values == (50, 5))
+    same = next(each for each in result.combinations if each.values == (50, 5))
     assert same.answers.forecasts[0].differences["mean"].value == 0.0
 
 
@@ -75,48 +75,48 @@ def test_a_combination_that_loses_trials_to_errors_is_not_called_the_best(book):
         ["Order", "=Inputs!B5", None, None, None, "-10; 0; 50", None],
         formula="=2*Inputs!B5+0*SQRT(Inputs!B2-Inputs!B5)",
     )
-    found = xlmc.decide(xlmc.load(path), trials=2_000)
-    best = found.best("Profit")
+    result = xlmc.decide(xlmc.load(path), trials=2_000)
+    best = result.best("Profit")
     assert best.combination.values == (0,)
     assert best.next.values == (-10,)
-    (losing,) = found.losing("Profit")
+    (losing,) = result.losing("Profit")
     assert losing.answers.run.lost_share("Profit") == pytest.approx(0.5, abs=0.05)
-    assert re.search(r"Left out of the largest and smallest of Profit.*: Order = 50 \((49|5\d) %\)\.", str(found))
+    assert re.search(r"Left out of the largest and smallest of Profit.*: Order = 50 \((49|5\d) %\)\.", str(result))
 
 
 def test_where_all_combinations_lose_trials_none_is_the_best(book):
     path = book(
         ["Order", "=Inputs!B5", None, None, None, "20; 50", None], formula="=2*Inputs!B5+0*SQRT(Inputs!B2-Inputs!B5)"
     )
-    found = xlmc.decide(xlmc.load(path), trials=2_000)
-    assert found.best("Profit") is None
-    assert "The mean of Profit is" not in str(found)
-    assert "Left out" in str(found)
+    result = xlmc.decide(xlmc.load(path), trials=2_000)
+    assert result.best("Profit") is None
+    assert "The mean of Profit is" not in str(result)
+    assert "Left out" in str(result)
 
 
 def test_the_best_order_is_found_and_how_sure_that_is(book):
-    found = xlmc.decide(xlmc.load(book()), ["Order"], trials=20_000)
-    best = found.best("Profit")
+    result = xlmc.decide(xlmc.load(book()), ["Order"], trials=20_000)
+    best = result.best("Profit")
     assert best.combination.values == (40,)
     assert best.is_sure
     exact = expected_profit(40, 5) - max(expected_profit(30, 5), expected_profit(50, 5))
     assert abs(best.ahead.value - exact) < 4 * best.ahead.error
-    worst = found.best("Profit", least=True)
+    worst = result.best("Profit", least=True)
     assert worst.combination.values[0] in (20, 60)  # whose expected profits are equal
     assert not worst.is_sure
 
 
 def test_a_combination_is_the_workbook_with_its_values_typed_in(book):
     model = xlmc.load(book())
-    found = xlmc.decide(model, ["Order", "Price"], trials=2_000, seed=7)
-    last = found.combinations[-1]
+    result = xlmc.decide(model, ["Order", "Price"], trials=2_000, seed=7)
+    last = result.combinations[-1]
     drawn = model.simulate(2_000, seed=7, keep_inputs=None).inputs["Demand"]
     assert np.allclose(last.answers.run.forecasts["Profit"], 6 * np.minimum(60, drawn) - 180, rtol=1e-14)
 
 
 def test_latin_hypercubes_are_compared_by_replicates(book):
-    found = xlmc.decide(xlmc.load(book()), ["Order"], trials=20_000, sampling="lhs")
-    answer = found.combinations[0].answers.forecasts[0]
+    result = xlmc.decide(xlmc.load(book()), ["Order"], trials=20_000, sampling="lhs")
+    answer = result.combinations[0].answers.forecasts[0]
     exact = expected_profit(20, 5) - expected_profit(50, 5)
     assert abs(answer.differences["mean"].value - exact) < 5 * answer.differences["mean"].error + 1e-9
 
@@ -138,9 +138,9 @@ def test_an_impossible_combination_does_not_stop_the_others(book, tmp_path):
     made["Inputs"]["C2"] = "=60-Inputs!B5"
     made["Inputs"]["D2"] = 55
     made.save(path)
-    found = xlmc.decide(xlmc.load(path), trials=500)
-    assert [each.values for each in found.combinations] == [(50,)]
-    assert list(found.impossible) == [(0,)]
+    result = xlmc.decide(xlmc.load(path), trials=500)
+    assert [each.values for each in result.combinations] == [(50,)]
+    assert list(result.impossible) == [(0,)]
 
 
 @pytest.mark.parametrize(
@@ -180,12 +180,12 @@ def test_a_table_that_is_interrupted_tells_what_was_run(book):
 
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        found = xlmc.decide(xlmc.load(book(ORDER)), trials=500, tell=tell)
+        result = xlmc.decide(xlmc.load(book(ORDER)), trials=500, tell=tell)
     finally:
         signal.signal(signal.SIGINT, before)
-    assert [each.values for each in found.combinations] == [(20,), (30,), (40,)]
-    assert found.ended == "it was interrupted after 4 of about 6 steps"
-    assert "Combinations that are not in it were not run." in str(found)
+    assert [each.values for each in result.combinations] == [(20,), (30,), (40,)]
+    assert result.ended == "it was interrupted after 4 of about 6 steps"
+    assert "Combinations that are not in it were not run." in str(result)
 
 
 @pytest.mark.parametrize("study", [xlmc.decide, xlmc.stress])
@@ -201,6 +201,6 @@ def test_a_share_is_not_in_the_units_of_its_forecast(tmp_path, study):
         "xlmc_decisions": "Decisions!A1:G2",
     }
     workbook_of(sheets, tables).save(tmp_path / "short.xlsx")
-    said = repr(study(xlmc.load(tmp_path / "short.xlsx"), trials=2_000))
-    assert "probability" in said
-    assert "% pieces" not in said
+    message = repr(study(xlmc.load(tmp_path / "short.xlsx"), trials=2_000))
+    assert "probability" in message
+    assert "% pieces" not in message

@@ -39,9 +39,9 @@ def answers(model, trials=2_000, seed=3, **more):
 
 @pytest.mark.parametrize("sampling", ["mc", "lhs", "sobol"])
 def test_answers_are_those_of_single_runs(model, sampling):
-    found = answers(model, sampling=sampling)
-    assert [each.name for each in found] == ["as it is", "narrow", "held", "open", "same"]
-    for each in found:
+    results = answers(model, sampling=sampling)
+    assert [each.name for each in results] == ["as it is", "narrow", "held", "open", "same"]
+    for each in results:
         state = model if each.scenario is None else model_of(model, each.scenario)
         own = simulate(state, trials=2_000, seed=3, sampling=sampling)
         assert np.array_equal(each.run.trial_index, own.trial_index)
@@ -87,8 +87,8 @@ def test_errors_of_differences_are_those_of_many_seeds(model):
         for number, scenario in enumerate(SCENARIOS[:3], 1):
             for key in (*NUMBERS, "acceptance"):
 
-                def value(found, number=number, key=key):
-                    each = found[number]
+                def value(result, number=number, key=key):
+                    each = result[number]
                     return each.acceptance_difference if key == "acceptance" else each.forecasts[0].differences[key]
 
                 z = [(value(each).value - value(truth).value) / value(each).error for each in runs]
@@ -105,10 +105,10 @@ def test_common_random_numbers_make_differences_sharper(model):
 
 
 def test_a_run_until_so_many_are_accepted_has_scenarios_of_as_many(model):
-    found = answers(model, trials=None, stopping=stopping(until_accepted=500))
-    assert [each.run.accepted for each in found] == [500] * 5
-    assert len({each.run.trials for each in found}) > 2
-    assert all(each.acceptance_difference.error > 0 for each in found[1:4])
+    result = answers(model, trials=None, stopping=stopping(until_accepted=500))
+    assert [each.run.accepted for each in result] == [500] * 5
+    assert len({each.run.trials for each in result}) > 2
+    assert all(each.acceptance_difference.error > 0 for each in result[1:4])
 
 
 def test_a_run_without_scenarios_has_none(model):

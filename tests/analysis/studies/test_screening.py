@@ -33,46 +33,46 @@ def weighted(book):
     return make
 
 
-def cost_of(found, name):
-    return next(cost for cost in found.single if cost.names == (name,))
+def cost_of(result, name):
+    return next(cost for cost in result.single if cost.names == (name,))
 
 
 @pytest.mark.parametrize("weight", [0.1, 0.5, 1.0])
 def test_the_cost_of_holding_an_assumption(weighted, weight):
-    found = screen(weighted({"a": 1.0, "b": weight}), "0.05", **SIZE)
-    change = cost_of(found, "b").forecasts["y"].standard_deviation.difference
+    result = screen(weighted({"a": 1.0, "b": weight}), "0.05", **SIZE)
+    change = cost_of(result, "b").forecasts["y"].standard_deviation.difference
     assert abs(change.value - (math.sqrt(1 / 12) - math.sqrt((1 + weight**2) / 12))) < 4 * change.error
-    moved = cost_of(found, "b").forecasts["y"].mean.difference
+    moved = cost_of(result, "b").forecasts["y"].mean.difference
     assert abs(moved.value) < 4 * moved.error
     assert moved.error == pytest.approx(weight * math.sqrt(1 / 12 / 20_000), rel=0.05)  # of b alone: a cancels
 
 
 def test_what_is_not_needed_is_held_and_what_is_needed_is_not(weighted):
-    found = screen(weighted({"a": 1.0, "b": 0.01}), **SIZE)
-    assert found.joint.names == ("b",)
-    assert cost_of(found, "a").judgement.verdict is Verdict.BEYOND
-    assert [each.name for each in found.expected] == ["b", "a"]
-    assert found.tolerances["y"] == (pytest.approx(0.1 * math.sqrt(1.0001 / 12), rel=0.02), False)
+    result = screen(weighted({"a": 1.0, "b": 0.01}), **SIZE)
+    assert result.joint.names == ("b",)
+    assert cost_of(result, "a").judgement.verdict is Verdict.BEYOND
+    assert [each.name for each in result.expected] == ["b", "a"]
+    assert result.tolerances["y"] == (pytest.approx(0.1 * math.sqrt(1.0001 / 12), rel=0.02), False)
 
 
 def test_many_small_ones_are_not_held_together_when_they_add_up(weighted):
     """Each b of weight 0.2 takes 0.006 from the SD of 0.34, all ten 0.05: about five fit into a tolerance of 0.03."""
-    found = screen(weighted({"a": 1.0, **{f"b{i}": 0.2 for i in range(10)}}), "0.03", trials=10_000, seed=1)
-    assert all(cost_of(found, f"b{i}").judgement.verdict is Verdict.WITHIN for i in range(10))
-    assert 2 <= len(found.joint.names) <= 6
-    assert found.joint.judgement.verdict is Verdict.WITHIN
-    assert found.joint.size <= 1.0
-    assert set(found.only_alone) | set(found.joint.names) == {f"b{i}" for i in range(10)}
+    result = screen(weighted({"a": 1.0, **{f"b{i}": 0.2 for i in range(10)}}), "0.03", trials=10_000, seed=1)
+    assert all(cost_of(result, f"b{i}").judgement.verdict is Verdict.WITHIN for i in range(10))
+    assert 2 <= len(result.joint.names) <= 6
+    assert result.joint.judgement.verdict is Verdict.WITHIN
+    assert result.joint.size <= 1.0
+    assert set(result.only_alone) | set(result.joint.names) == {f"b{i}" for i in range(10)}
 
 
 def test_filters_that_decide_nothing_and_the_cells_that_only_they_need(weighted):
     more = {"E1": "=A2^2", "F1": "=E1+1", "G1": "=A1*2"}
     filters = {"idle": {"cell": "F1", "at_least": 0}, "half": {"cell": "G1", "above": 1}}
-    found = screen(weighted({"a": 1.0, "b": 0.01}, filters, more), **SIZE)
-    assert found.reduced.names == ("idle",)
-    assert [str(cell) for cell in found.dropped] == ["S!E1", "S!F1"]
-    assert found.cells == 4
-    verdicts = {cost.names[0]: cost.judgement.verdict for cost in found.filters}
+    result = screen(weighted({"a": 1.0, "b": 0.01}, filters, more), **SIZE)
+    assert result.reduced.names == ("idle",)
+    assert [str(cell) for cell in result.dropped] == ["S!E1", "S!F1"]
+    assert result.cells == 4
+    verdicts = {cost.names[0]: cost.judgement.verdict for cost in result.filters}
     assert verdicts == {"idle": Verdict.WITHIN, "half": Verdict.BEYOND}
 
 
@@ -80,9 +80,9 @@ def test_cells_that_only_held_assumptions_feed_do_not_vary(weighted):
     model = weighted({"a": 1.0, "b": 0.0}, {"kept": {"cell": "E1", "at_least": 0}}, {"E1": "=A2+A1", "F1": "=A2"})
     assert screen(model, **SIZE).constant == ()
     model = weighted({"a": 1.0, "b": 0.0}, {"half": {"cell": "E1", "above": 0.5}}, {"E1": "=A1+0*F1", "F1": "=A2^2"})
-    found = screen(model, **SIZE)
-    assert [str(cell) for cell in found.constant] == ["S!F1"]
-    assert found.varying == 2
+    result = screen(model, **SIZE)
+    assert [str(cell) for cell in result.constant] == ["S!F1"]
+    assert result.varying == 2
 
 
 def test_a_change_of_the_acceptance_counts_too(weighted):
@@ -129,10 +129,10 @@ def cancelling(book, formula, correlations):
     ],
 )
 def test_correlated_assumptions_are_tried_together(book, formula, correlations, held):
-    found = screen(cancelling(book, formula, correlations), **SIZE)
-    assert set(found.joint.names) == held
-    assert found.joint.judgement.verdict is Verdict.WITHIN
-    assert not {"a", "b", "c"} & {cost.names[0] for cost in found.single if cost.judgement.verdict is Verdict.WITHIN}
+    result = screen(cancelling(book, formula, correlations), **SIZE)
+    assert set(result.joint.names) == held
+    assert result.joint.judgement.verdict is Verdict.WITHIN
+    assert not {"a", "b", "c"} & {cost.names[0] for cost in result.single if cost.judgement.verdict is Verdict.WITHIN}
 
 
 def test_assumptions_without_strong_correlations_are_in_no_group(weighted):
@@ -141,17 +141,17 @@ def test_assumptions_without_strong_correlations_are_in_no_group(weighted):
 
 def test_sets_by_pattern(weighted):
     model = weighted({"a": 1.0, "b one": 0.1, "b two": 0.2, "c": 0.3})
-    found = screen(model, sets=["B *", "c, b one"], **SIZE)
-    assert [cost.names for cost in found.sets] == [("b one", "b two"), ("c", "b one")]
+    result = screen(model, sets=["B *", "c, b one"], **SIZE)
+    assert [cost.names for cost in result.sets] == [("b one", "b two"), ("c", "b one")]
     with pytest.raises(SimulationError, match="No assumption that is drawn has the name 'd'"):
         screen(model, sets=["d"], **SIZE)
 
 
 def test_an_assumption_without_a_base_value_is_named(book):
     given = {"a": {"cell": "A1", "low": 0, "high": 1}, "b": {"cell": "A2", "low": 0, "high": 1}}
-    found = screen(book({"A1": 0.5, "D1": "=A1+A2"}, given, {"y": "D1"}), **SIZE)
-    assert found.baseless == ("b",)
-    assert [cost.names for cost in found.single] == [("a",)]
+    result = screen(book({"A1": 0.5, "D1": "=A1+A2"}, given, {"y": "D1"}), **SIZE)
+    assert result.baseless == ("b",)
+    assert [cost.names for cost in result.single] == [("a",)]
 
 
 def test_correlated_assumptions_can_be_held(book):
@@ -191,9 +191,9 @@ def test_the_trials_are_independent_whatever_the_book_says(weighted):
     model = weighted({"a": 1.0, "b": 0.01})
     settings = replace(model.definitions.settings, sampling="sobol")
     other = CompiledModel(model.workbook, replace(model.definitions, settings=settings), model.path)
-    found, plain = screen(other, **SIZE), screen(model, **SIZE)
-    assert found.run.settings.sampling == "mc"
-    assert cost_of(found, "b").size == cost_of(plain, "b").size
+    result, plain = screen(other, **SIZE), screen(model, **SIZE)
+    assert result.run.settings.sampling == "mc"
+    assert cost_of(result, "b").size == cost_of(plain, "b").size
     assert compare(other, other, **SIZE).second.settings.sampling == "mc"
 
 
@@ -227,10 +227,10 @@ def test_what_impact_centre_and_tangent_cost(case):
     geometry = [name for name in case.sets[1].names if "impact centre" in name]
     assert len(geometry) == 4
     assert all(cost_of(case, name).acceptance.first.value == case.run.acceptance.value for name in geometry)
-    found = case.sets[2].forecasts["Nissan impact speed"]
-    for change, value in ((found.mean, 4.69), (found.standard_deviation, 1.86)):
+    result = case.sets[2].forecasts["Nissan impact speed"]
+    for change, value in ((result.mean, 4.69), (result.standard_deviation, 1.86)):
         assert abs(change.second.value - value) < 0.005 + 4 * change.second.error
-    change = found.standard_deviation.difference
+    change = result.standard_deviation.difference
     assert -0.3 + 3 * change.error < change.value < -3 * change.error  # the book needs them, but not by 0.3 mph
     assert case.sets[2].judgement.verdict is not Verdict.BEYOND
 
@@ -282,10 +282,10 @@ def test_an_assumption_that_alone_decides_the_probability_is_needed(book):
 def test_the_range_of_each_forecast_is_its_own(book):
     model = book({"A1": 0.5, "D1": "=A1"}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"y": "D1"})
     wide = replace(model.definitions.forecasts[0], central=0.9)
-    found = screen(
+    result = screen(
         CompiledModel(model.workbook, replace(model.definitions, forecasts=(wide,)), model.path), "0.1", **SIZE
     )
-    each = cost_of(found, "a").forecasts["y"]
+    each = cost_of(result, "a").forecasts["y"]
     assert each.share == 0.9
     assert each.low.first.value == pytest.approx(0.05, abs=0.01)
 
@@ -300,11 +300,11 @@ def test_a_forecast_without_numbers_judges_nothing(book):
     """It is named; the others are judged without it. Where none has numbers there is nothing to say."""
     cells = {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2/100", "B2": "=SQRT(-1-A1)"}
     given = {name: {"cell": cell, "low": 0, "high": 1} for name, cell in (("a", "A1"), ("b", "A2"))}
-    found = screen(book(cells, given, {"y": "B1", "error": "B2"}), **SIZE)
-    assert found.valueless == ("error",)
-    assert [*found.tolerances] == ["y"]
-    assert found.joint.names == ("b",)
-    assert cost_of(found, "b").size < 1
+    result = screen(book(cells, given, {"y": "B1", "error": "B2"}), **SIZE)
+    assert result.valueless == ("error",)
+    assert [*result.tolerances] == ["y"]
+    assert result.joint.names == ("b",)
+    assert cost_of(result, "b").size < 1
     with pytest.raises(SimulationError, match="No forecast has an answer in two accepted trials"):
         screen(book(cells, given, {"error": "B2"}), **SIZE)
 
@@ -326,10 +326,10 @@ def test_held_at_the_ends_of_a_range(weighted):
 
     c of weight 0.02 moves it by 0.0095.
     """
-    found = screen(weighted({"a": 1.0, "b": 0.1, "c": 0.02}), "0.02", ends=True, **SIZE)
-    free = {each.name: each.free for each in found.ends}
+    result = screen(weighted({"a": 1.0, "b": 0.1, "c": 0.02}), "0.02", ends=True, **SIZE)
+    free = {each.name: each.free for each in result.ends}
     assert free == {"b": False, "c": True}
-    (b,) = [each for each in found.ends if each.name == "b"]
+    (b,) = [each for each in result.ends if each.name == "b"]
     for value, cost, sign in zip(b.values, b.costs, (-1, 1), strict=True):
         share = (1 + sign) / 2 * 0.95 + 0.025
         assert abs(value - share) < 4 * (share * (1 - share) / 20_000) ** 0.5

@@ -44,10 +44,10 @@ def book(tmp_path):
     ],
 )
 def test_values_are_those_of_the_closed_form(book, cell, to, by, ends, values):
-    found = xlmc.seek(book, cell, to, by, **ends)
-    assert found.values == pytest.approx(values, rel=1e-13)
-    assert found.value == pytest.approx(values[0], rel=1e-13) if values else found.value is None
-    assert found.answers == pytest.approx([to] * len(values), rel=1e-12, abs=1e-12)
+    result = xlmc.seek(book, cell, to, by, **ends)
+    assert result.values == pytest.approx(values, rel=1e-13)
+    assert result.value == pytest.approx(values[0], rel=1e-13) if values else result.value is None
+    assert result.answers == pytest.approx([to] * len(values), rel=1e-12, abs=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -61,17 +61,17 @@ def test_values_are_those_of_the_closed_form(book, cell, to, by, ends, values):
 )
 def test_a_range_in_which_the_cell_has_the_value_is_told_by_its_ends(book, cell, to, low, high, flat):
     """As finely as the range is scanned: a part in a thousand of it."""
-    found = xlmc.seek(book, cell, to, "Model!B1", low=low, high=high)
-    assert np.allclose(np.reshape(found.throughout, (-1, 2)), np.reshape(flat, (-1, 2)), atol=(high - low) / 1000)
-    assert found.values.size == 2
-    assert found.answers == pytest.approx([to, to])
+    result = xlmc.seek(book, cell, to, "Model!B1", low=low, high=high)
+    assert np.allclose(np.reshape(result.throughout, (-1, 2)), np.reshape(flat, (-1, 2)), atol=(high - low) / 1000)
+    assert result.values.size == 2
+    assert result.answers == pytest.approx([to, to])
 
 
 def test_the_curve_passes_the_value(book):
-    found = xlmc.seek(book, "Model!B3", 0, "Model!B1", low=0, high=10)
-    at, answers = found.curve
+    result = xlmc.seek(book, "Model!B3", 0, "Model!B1", low=0, high=10)
+    at, answers = result.curve
     assert np.allclose(answers, at**2 - 4)
-    assert (found.base, found.base_answer) == (3.0, 5.0)
+    assert (result.base, result.base_answer) == (3.0, 5.0)
 
 
 @pytest.mark.parametrize(
@@ -125,7 +125,7 @@ def test_rows_of_tables_are_named_as_well(tmp_path):
     }
     path = tmp_path / "rows.xlsx"
     workbook_of(sheets, {"xlmc_assumptions": "In!A1:D2", "xlmc_forecasts": "Out!A1:B2"}).save(path)
-    found = xlmc.seek(path, "speed", 2, "Wet drag", low=0, high=1)
-    assert (str(found.cell), str(found.by), found.value) == ("Out!B2", "In!B2", 0.25)
+    result = xlmc.seek(path, "speed", 2, "Wet drag", low=0, high=1)
+    assert (str(result.cell), str(result.by), result.value) == ("Out!B2", "In!B2", 0.25)
     with pytest.raises(DefinitionError, match="Did you mean Speed"):
         xlmc.seek(path, "Sped", 2, "Wet drag")

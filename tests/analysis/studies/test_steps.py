@@ -33,19 +33,19 @@ def wide(book, count, weight=0.001):
 
 def interrupting(at):
     """`tell` that presses Ctrl-C at a step, counted from 1, and what it was told."""
-    told = []
+    messages = []
 
     def tell(what):
-        told.append(what)
-        if len(told) == at:
+        messages.append(what)
+        if len(messages) == at:
             signal.raise_signal(signal.SIGINT)
 
-    return tell, told
+    return tell, messages
 
 
 def test_steps_tell_which_of_how_many_and_how_long():
-    told, now = [], iter([0.0, 10.0, 14.0, 18.0, 400.0])
-    with Steps(told.append, lambda: next(now)) as steps:
+    messages, now = [], iter([0.0, 10.0, 14.0, 18.0, 400.0])
+    with Steps(messages.append, lambda: next(now)) as steps:
         steps.begin("first")
         steps.expect(60)
         for name in ("second", "third"):
@@ -53,7 +53,7 @@ def test_steps_tell_which_of_how_many_and_how_long():
         steps.expect(1)
         steps.begin("last")
         steps.begin("one more")
-    assert told == [
+    assert messages == [
         "first",
         "second (2 of about 61, 10 min left)",
         "third (3 of about 61, 7 min left)",
@@ -63,8 +63,8 @@ def test_steps_tell_which_of_how_many_and_how_long():
 
 
 def test_ctrl_c_ends_the_steps_once_there_is_something_to_tell():
-    told = []
-    with Steps(told.append) as steps:
+    messages = []
+    with Steps(messages.append) as steps:
         steps.begin("first")
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
@@ -78,31 +78,31 @@ def test_ctrl_c_ends_the_steps_once_there_is_something_to_tell():
         assert done == [0, 1, 2]
         assert steps.why_ended == "it was interrupted after 1 of about 9 steps"
         steps.begin("what is needed all the same")
-        assert told[-1] == "what is needed all the same (interrupted: it ends with what is known as soon as it can)"
+        assert messages[-1] == "what is needed all the same (interrupted: it ends with what is known as soon as it can)"
         with pytest.raises(KeyboardInterrupt):
             signal.raise_signal(signal.SIGINT)
 
 
 def test_many_assumptions_are_held_at_once_before_any_is_alone(book):
-    found = screen(wide(book, 40), trials=2_000, seed=1)
-    assert set(found.at_once.names) == {f"b{k}" for k in range(40)}
-    assert [cost.names for cost in found.single] == [("a",)]
-    assert found.joint == found.at_once
-    assert found.runs < 10
-    assert not found.ended
+    result = screen(wide(book, 40), trials=2_000, seed=1)
+    assert set(result.at_once.names) == {f"b{k}" for k in range(40)}
+    assert [cost.names for cost in result.single] == [("a",)]
+    assert result.joint == result.at_once
+    assert result.runs < 10
+    assert not result.ended
 
 
 def test_few_assumptions_are_held_one_by_one(book):
-    found = screen(wide(book, ALONE - 1), trials=2_000, seed=1)
-    assert found.at_once is None
-    assert len(found.single) == ALONE
-    assert len(found.joint.names) == ALONE - 1
+    result = screen(wide(book, ALONE - 1), trials=2_000, seed=1)
+    assert result.at_once is None
+    assert len(result.single) == ALONE
+    assert len(result.joint.names) == ALONE - 1
 
 
 def test_an_answer_that_a_change_does_not_reach_is_compared_with_itself(book):
     """b does not reach z: its difference is 0 ± 0 in every number, to the bit that of a full comparison."""
-    found = screen(wide(book, 2), trials=2_000, seed=1)
-    (b, a) = sorted(found.single, key=lambda cost: cost.size)[0], found.single[-1]
+    result = screen(wide(book, 2), trials=2_000, seed=1)
+    (b, a) = sorted(result.single, key=lambda cost: cost.size)[0], result.single[-1]
     assert all(change.difference.value == change.difference.error == 0.0 for _, change in b.forecasts["z"].changes)
     assert a.forecasts["z"].standard_deviation.difference.value != 0.0
     assert b.forecasts["y"].largest > 0.0
@@ -110,13 +110,13 @@ def test_an_answer_that_a_change_does_not_reach_is_compared_with_itself(book):
 
 def test_a_screening_that_is_interrupted_tells_what_was_run(book):
     model = wide(book, 9, weight=0.5)
-    tell, told = interrupting(6)
-    found = screen(model, trials=2_000, seed=1, tell=tell)
-    assert found.ended.startswith("it was interrupted after 6 of about ")
-    assert len(told) == 6
-    assert len(found.single) == 4
+    tell, messages = interrupting(6)
+    result = screen(model, trials=2_000, seed=1, tell=tell)
+    assert result.ended.startswith("it was interrupted after 6 of about ")
+    assert len(messages) == 6
+    assert len(result.single) == 4
     whole = {cost.names: cost for cost in screen(model, trials=2_000, seed=1).single}
-    assert all(cost.size == whole[cost.names].size for cost in found.single)
+    assert all(cost.size == whole[cost.names].size for cost in result.single)
 
 
 def test_before_there_is_an_answer_ctrl_c_is_as_ever(book):
@@ -127,13 +127,13 @@ def test_before_there_is_an_answer_ctrl_c_is_as_ever(book):
 
 def test_a_search_for_lost_digits_that_is_interrupted(book):
     model = book({"A1": 1.5, "B1": "=(A1+1E16)-1E16"}, {"x": {"cell": "A1", "low": 1, "high": 2}}, {"f": "B1"}, {})
-    tell, told = interrupting(4)
-    found = stability(model, trials=500, seed=1, tell=tell)
-    assert [finding.kind for finding in found.findings] == ["cancellation"]
-    assert found.cells == ()
-    assert found.ended == "it was interrupted after 4 of about 12 steps"
-    assert found.not_looked_for[0] == "heavy tails"
-    assert told[-1].startswith("lost digits (4 of about 12")
+    tell, messages = interrupting(4)
+    result = stability(model, trials=500, seed=1, tell=tell)
+    assert [finding.kind for finding in result.findings] == ["cancellation"]
+    assert result.cells == ()
+    assert result.ended == "it was interrupted after 4 of about 12 steps"
+    assert result.not_looked_for[0] == "heavy tails"
+    assert messages[-1].startswith("lost digits (4 of about 12")
     whole = stability(model, trials=500, seed=1)
     assert (whole.ended, whole.not_looked_for) == ("", ())
 
@@ -146,19 +146,19 @@ def test_a_search_for_causes_that_is_interrupted(book):
         return book(cells, given, {"y": "B1"}, {})
 
     tell, _ = interrupting(4)
-    found = compare(scene(1), scene(2), trials=2_000, seed=1, tell=tell)
-    assert found.ended.startswith("it was interrupted after 4")
-    assert found.forecasts[0].cause is None
-    assert found.forecasts[0].difference.mean.difference.value == pytest.approx(3.0, rel=0.1)
+    result = compare(scene(1), scene(2), trials=2_000, seed=1, tell=tell)
+    assert result.ended.startswith("it was interrupted after 4")
+    assert result.forecasts[0].cause is None
+    assert result.forecasts[0].difference.mean.difference.value == pytest.approx(3.0, rel=0.1)
     assert compare(scene(1), scene(2), trials=2_000, seed=1).forecasts[0].cause is not None
 
 
 def test_methods_that_are_interrupted_tell_of_the_runs_made(book):
     model = book({"A1": 1.5, "B1": "=A1^2"}, {"x": {"cell": "A1", "low": 1, "high": 2}}, {"f": "B1"}, {})
-    told = []
+    messages = []
 
     def tell(what):
-        told.append(what)
+        messages.append(what)
         if "3 of 9" in what:
             signal.raise_signal(signal.SIGINT)
             signal.raise_signal(signal.SIGINT)
@@ -166,17 +166,17 @@ def test_methods_that_are_interrupted_tell_of_the_runs_made(book):
     sizes = {"reference_trials": 4_096, "trials": 1_024, "seed": 1}
     with pytest.raises(KeyboardInterrupt):
         study(model, replicates=9, tell=tell, **sizes)
-    told.clear()
+    messages.clear()
 
     def later(what):
-        told.append(what)
+        messages.append(what)
         if "4 of 9" in what:
             signal.raise_signal(signal.SIGINT)
 
-    found = study(model, replicates=9, tell=later, **sizes)
-    assert "4 of 9" in told[-1]
-    assert found.ended
-    assert found.curves
+    result = study(model, replicates=9, tell=later, **sizes)
+    assert "4 of 9" in messages[-1]
+    assert result.ended
+    assert result.curves
 
 
 def test_of_many_steps_groups_that_are_not_needed_are_left_out_first():

@@ -39,31 +39,31 @@ def both_below(a, y):
     return float(multivariate_normal([0, 0], [[1, RHO], [RHO, 1]]).cdf([a, y]))
 
 
-def tail(found, name, *, high):
-    return next(each for each in found.tails if each.assumption == name and each.is_high is high)
+def tail(result, name, *, high):
+    return next(each for each in result.tails if each.assumption == name and each.is_high is high)
 
 
 @pytest.fixture(scope="module")
-def found():
+def result():
     return xlmc.stress(sum_of_two(), trials=100_000, seed=5)
 
 
-def test_means_and_shares_of_tails_are_those_of_the_closed_form(found):
-    assert [(each.assumption, each.is_high) for each in found.tails] == [
+def test_means_and_shares_of_tails_are_those_of_the_closed_form(result):
+    assert [(each.assumption, each.is_high) for each in result.tails] == [
         ("a", False),
         ("a", True),
         ("b", False),
         ("b", True),
     ]
-    for each in found.tails:
+    for each in result.tails:
         assert each.trials == 10_000
         side, size = (1 if each.is_high else -1), {"a": 6, "b": 3}[each.assumption]
         part = each.parts["y"]
         change, mean = part.changes["mean"], part.numbers["mean"]
         assert abs(change.value - side * size * SHIFT) < 4 * change.error
         assert abs(mean.value - (3 + side * size * SHIFT)) < 4 * mean.error
-        assert mean.value - found.base["y"].numbers["mean"].value == pytest.approx(change.value)
-    low = tail(found, "a", high=False)
+        assert mean.value - result.base["y"].numbers["mean"].value == pytest.approx(change.value)
+    low = tail(result, "a", high=False)
     assert abs(low.limit - (1 + 2 * LIMIT)) < 4 * 2 * math.sqrt(0.09 / 100_000) / UNIT.pdf(LIMIT)
     part = low.parts["y"]
     above = 1 - both_below(LIMIT, (4 - 3) / SD) / SHARE
@@ -73,13 +73,13 @@ def test_means_and_shares_of_tails_are_those_of_the_closed_form(found):
         assert abs(part.numbers[name].value - exact) < 4 * part.numbers[name].error
 
 
-def test_the_assumption_that_moves_most_comes_first(found):
-    assert [pair[0].assumption for pair in found.ranked("y")] == ["a", "b"]
-    assert "y moves most with a" in str(found)
+def test_the_assumption_that_moves_most_comes_first(result):
+    assert [pair[0].assumption for pair in result.ranked("y")] == ["a", "b"]
+    assert "y moves most with a" in str(result)
 
 
-def test_medians_of_inputs_where_the_answer_is_high(found):
-    (scenario,) = found.scenarios
+def test_medians_of_inputs_where_the_answer_is_high(result):
+    (scenario,) = result.scenarios
     assert (scenario.forecast, scenario.words, scenario.trials) == ("y", "above P90", 10_000)
     assert [each.assumption for each in scenario.inputs] == ["a", "b"]
     limit = UNIT.inv_cdf(0.9)
@@ -96,12 +96,12 @@ def test_what_has_nothing_to_do_with_the_answer_distinguishes_nothing():
     model = xlmc.model(lambda a, b: {"y": a, "z": b}, {"a": xlmc.Uniform(0, 1), "b": xlmc.Uniform(0, 1)}, ["y", "z"])
     chances = []
     for seed in range(60):
-        found = xlmc.stress(model, trials=2_000, seed=seed, forecasts=["y"])
-        assert [each.forecast for each in found.scenarios] == ["y"]
-        inputs = {each.assumption: each for each in found.scenarios[0].inputs}
+        result = xlmc.stress(model, trials=2_000, seed=seed, forecasts=["y"])
+        assert [each.forecast for each in result.scenarios] == ["y"]
+        inputs = {each.assumption: each for each in result.scenarios[0].inputs}
         assert inputs["a"].is_sure
         chances.append(inputs["b"].chance)
-        assert tail(found, "b", high=True).parts["y"].changes["mean"].error > 0
+        assert tail(result, "b", high=True).parts["y"].changes["mean"].error > 0
     assert 0 < sum(chance < 0.2 for chance in chances) < 25  # 12 are expected
     assert sum(chance < 0.003 for chance in chances) <= 2
 
@@ -111,7 +111,7 @@ def test_errors_are_what_other_seeds_show():
     model = xlmc.model(
         lambda a, b: {"y": a, "z": 3 * a + b}, {"a": xlmc.Normal(0, 1), "b": xlmc.Normal(0, 1)}, ["y", "z"]
     )
-    found = {}
+    result = {}
     for seed in range(100):
         study = xlmc.stress(model, trials=1_500, seed=seed, scenarios=["between P20 and P60"])
         for name in ("y", "z"):
@@ -119,10 +119,10 @@ def test_errors_are_what_other_seeds_show():
             for key in ("mean", "high"):
                 for what in ("numbers", "changes"):
                     number = getattr(part, what)[key]
-                    found.setdefault((name, key, what), []).append((number.value, number.error))
+                    result.setdefault((name, key, what), []).append((number.value, number.error))
         moved = next(each for each in study.scenarios[1].inputs if each.assumption == "a")
-        found.setdefault("median", []).append((moved.shift.value, moved.shift.error))
-    for key, pairs in found.items():
+        result.setdefault("median", []).append((moved.shift.value, moved.shift.error))
+    for key, pairs in result.items():
         values, errors = np.array(pairs).T
         assert 0.75 < values.std(ddof=1) / errors.mean() < 1.35, key
 
@@ -135,16 +135,16 @@ def test_what_is_correlated_moves_as_well():
         ["y"],
         correlations={("a", "b"): 6 / math.pi * math.asin(0.4)},
     )
-    found = xlmc.stress(model, trials=50_000, assumptions=["a"])
-    change = tail(found, "a", high=True).parts["y"].changes["mean"]
+    result = xlmc.stress(model, trials=50_000, assumptions=["a"])
+    change = tail(result, "a", high=True).parts["y"].changes["mean"]
     assert abs(change.value - 0.8 * SHIFT) < 4 * change.error
 
 
 def test_tails_are_those_of_the_accepted_trials():
     """Of a on (-1, 1), of which a filter leaves (0, 1), the lowest fifth ends at .2."""
     model = xlmc.model(lambda a: {"y": a, "f": a}, {"a": xlmc.Uniform(-1, 1)}, ["y"], {"f": {"at_least": 0}})
-    found = xlmc.stress(model, trials=40_000, share=20)
-    low = tail(found, "a", high=False)
+    result = xlmc.stress(model, trials=40_000, share=20)
+    low = tail(result, "a", high=False)
     assert low.limit == pytest.approx(0.2, abs=0.01)
     mean = low.parts["y"].numbers["mean"]
     assert abs(mean.value - 0.1) < 4 * mean.error
@@ -156,22 +156,22 @@ def test_values_that_many_trials_have_belong_to_a_tail_together():
         {"coin": xlmc.YesNo(0.3), "still": xlmc.Uniform(2, 2), "x": xlmc.Uniform(0, 1)},
         ["y"],
     )
-    found = xlmc.stress(model, trials=20_000)
-    low, high = (tail(found, "coin", high=high) for high in (False, True))
+    result = xlmc.stress(model, trials=20_000)
+    low, high = (tail(result, "coin", high=high) for high in (False, True))
     assert (low.limit, high.limit) == (0, 1)
     assert low.trials + high.trials == 20_000
     change = high.parts["y"].changes["mean"]
     assert abs(change.value - 0.7) < 4 * change.error
-    assert "still" not in {each.assumption for each in found.tails}
+    assert "still" not in {each.assumption for each in result.tails}
 
 
 def test_yes_and_no_are_shares():
     model = xlmc.model(lambda a: {"y": a > 0.5}, {"a": xlmc.Uniform(0, 1)}, ["y"])
-    found = xlmc.stress(model, trials=5_000)
-    assert not found.scenarios
-    share = tail(found, "a", high=True).parts["y"].numbers["mean"]
+    result = xlmc.stress(model, trials=5_000)
+    assert not result.scenarios
+    share = tail(result, "a", high=True).parts["y"].numbers["mean"]
     assert (share.value, share.error > 0) == (1.0, True)
-    assert "the probability is" in str(found)
+    assert "the probability is" in str(result)
 
 
 @pytest.mark.parametrize(
@@ -218,15 +218,15 @@ def test_of_many_inputs_and_answers_those_that_matter_are_told():
         dict.fromkeys(names, xlmc.Uniform(0, 1)),
         [f"y{at}" for at in range(25)],
     )
-    found = xlmc.stress(model, trials=20_000)
-    assert [each.name for each in found.forecasts] == [f"y{at}" for at in range(20)]
-    assert found.left_out == 5
-    told = [pair[0].assumption for pair in found.ranked("y3") if "y3" in pair[0].parts]
-    assert len(told) == 20
-    assert set(told) >= set(names[14:])
-    assert told[0] in names[27:]
-    assert len(found.scenarios[0].inputs) == 20
-    assert "Shown are the first 20 forecasts; 5 more can be named" in str(found)
+    result = xlmc.stress(model, trials=20_000)
+    assert [each.name for each in result.forecasts] == [f"y{at}" for at in range(20)]
+    assert result.left_out == 5
+    messages = [pair[0].assumption for pair in result.ranked("y3") if "y3" in pair[0].parts]
+    assert len(messages) == 20
+    assert set(messages) >= set(names[14:])
+    assert messages[0] in names[27:]
+    assert len(result.scenarios[0].inputs) == 20
+    assert "Shown are the first 20 forecasts; 5 more can be named" in str(result)
     assert [each.name for each in xlmc.stress(model, trials=2_000, forecasts=["y24"]).forecasts] == ["y24"]
 
 
@@ -236,6 +236,6 @@ def test_counts_and_shares_are_told_as_such():
         {"n": xlmc.Poisson(3), "a": xlmc.Normal(0, 1)},
         {"count": {"kind": "whole number"}, "rare": {"kind": "yes/no"}},
     )
-    told = str(xlmc.stress(model, trials=4_000, seed=1))
-    assert "rare moves most with n: with its highest 10 % the probability is" in told
-    assert "count above P90 (5 or more, " in told
+    messages = str(xlmc.stress(model, trials=4_000, seed=1))
+    assert "rare moves most with n: with its highest 10 % the probability is" in messages
+    assert "count above P90 (5 or more, " in messages

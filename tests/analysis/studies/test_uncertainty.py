@@ -28,12 +28,12 @@ def sum_of_two(**more):
 
 
 @pytest.fixture(scope="module")
-def found():
+def result():
     return xlmc.uncertainty(sum_of_two(), uncertain=["mean"], outer=400, inner=2_000, seed=3)
 
 
-def bands_of(found, name="y"):
-    return {band.number: band for band in found[name].bands}
+def bands_of(result, name="y"):
+    return {band.number: band for band in result[name].bands}
 
 
 @pytest.mark.parametrize(
@@ -46,21 +46,21 @@ def bands_of(found, name="y"):
         ("SD", 1.0, 1.0),
     ],
 )
-def test_the_ends_of_each_band_are_those_of_the_closed_form(found, number, low, high):
-    band = bands_of(found)[number]
+def test_the_ends_of_each_band_are_those_of_the_closed_form(result, number, low, high):
+    band = bands_of(result)[number]
     noise = 2.0 / math.sqrt(2_000) * 2  # of a percentile of 2,000 trials, and twice that
     assert abs(band.low.value - low) < 4 * band.low.error + noise
     assert abs(band.high.value - high) < 4 * band.high.error + noise
 
 
-def test_probabilities_have_bands(found):
-    band = bands_of(found)["P(> 5)"]
+def test_probabilities_have_bands(result):
+    band = bands_of(result)["P(> 5)"]
     assert (band.low.value, band.high.value) == pytest.approx((0.0, 1.0), abs=1e-3)
     assert abs(band.pooled.value - 0.5) < 4 * band.pooled.error
 
 
-def test_the_curve_of_all_trials_lies_within_its_band(found):
-    each = found["y"]
+def test_the_curve_of_all_trials_lies_within_its_band(result):
+    each = result["y"]
     assert np.all(each.low <= each.curve)
     assert np.all(each.curve <= each.high)
     assert each.curve[len(each.curve) // 2] == pytest.approx(5.0, abs=0.1)
@@ -69,16 +69,16 @@ def test_the_curve_of_all_trials_lies_within_its_band(found):
 def test_the_friction_of_the_paper(unknown_mean):
     """Figures 3 and 4: bands from the uniform mean, and all trials as a uniform plus a normal."""
     path, _ = unknown_mean
-    found = xlmc.uncertainty(xlmc.load(path), outer=400, inner=1_000, uncertain=["Mean friction", "Skid"])
-    assert found.variable == ("Scatter of friction", "Friction")
-    bands = bands_of(found, "Friction of the skid")
+    result = xlmc.uncertainty(xlmc.load(path), outer=400, inner=1_000, uncertain=["Mean friction", "Skid"])
+    assert result.variable == ("Scatter of friction", "Friction")
+    bands = bands_of(result, "Friction of the skid")
     for band, low, high in ((bands["mean"], 0.7075, 0.8425), (bands["median"], 0.7075, 0.8425)):
         assert abs(band.low.value - low) < 4 * band.low.error
         assert abs(band.high.value - high) < 4 * band.high.error
     pooled = bands["SD"].pooled
     variance = 0.15**2 / 12 + (0.03**2 + 0.03 * 0.07 + 0.07**2) / 3  # of the mean, and the mean of the scatter squared
     assert abs(pooled.value - math.sqrt(variance)) < 4 * pooled.error
-    causes = found["Speed"].causes
+    causes = result["Speed"].causes
     assert causes["Mean friction"].value > 0.95 > abs(causes["Skid"].value)
 
 
@@ -86,16 +86,16 @@ def test_a_row_says_what_is_uncertain(unknown_mean):
     path, _ = unknown_mean
     model = load(path)
     assert [a.name for a in model.assumptions if a.uncertain] == ["Mean friction", "Scatter of friction", "Skid"]
-    found = uncertainty(model, outer=40, inner=50)
-    assert (found.uncertain, found.variable) == (("Mean friction", "Scatter of friction", "Skid"), ("Friction",))
+    result = uncertainty(model, outer=40, inner=50)
+    assert (result.uncertain, result.variable) == (("Mean friction", "Scatter of friction", "Skid"), ("Friction",))
 
 
 @pytest.mark.parametrize("engine", ["numpy", "jit", "formulas"])
 @pytest.mark.parametrize("jobs", [1, 2])
 def test_every_engine_gives_the_same_bands(unknown_mean, engine, jobs):
     path, expected = unknown_mean
-    found = xlmc.uncertainty(xlmc.load(path), outer=40, inner=50, seed=5, engine=engine, jobs=jobs)
-    assert [band.low.value for band in found["Speed"].bands] == pytest.approx(expected, rel=1e-12)
+    result = xlmc.uncertainty(xlmc.load(path), outer=40, inner=50, seed=5, engine=engine, jobs=jobs)
+    assert [band.low.value for band in result["Speed"].bands] == pytest.approx(expected, rel=1e-12)
 
 
 def test_an_outer_draw_counts_by_the_trials_that_filters_keep():
@@ -107,8 +107,8 @@ def test_an_outer_draw_counts_by_the_trials_that_filters_keep():
         ["kept"],
     )
     for confidence, low in ((85, 0.0), (75, 1.0)):  # a tenth of the trials has 0: more than 7.5 %, less than 12.5 %
-        found = xlmc.uncertainty(model, uncertain=["side"], outer=400, inner=500, confidence=confidence)
-        (band,) = found["y"].bands
+        result = xlmc.uncertainty(model, uncertain=["side"], outer=400, inner=500, confidence=confidence)
+        (band,) = result["y"].bands
         assert band.number == "probability of yes"
         assert band.pooled.value == pytest.approx(0.9, abs=0.02)
         assert (band.low.value, band.high.value) == (low, 1.0)
@@ -121,9 +121,9 @@ def test_outer_draws_without_accepted_trials_are_counted():
         ["y"],
         ["kept"],
     )
-    found = xlmc.uncertainty(model, uncertain=["mean"], outer=100, inner=50)
-    assert found.empty == 80
-    assert found["y"].draws == 20
+    result = xlmc.uncertainty(model, uncertain=["mean"], outer=100, inner=50)
+    assert result.empty == 80
+    assert result["y"].draws == 20
     with pytest.raises(SimulationError, match="None of 2,000 trials was accepted"):
         xlmc.uncertainty(model.with_(mean=xlmc.Uniform(0, 1)), uncertain=["mean"], outer=20, inner=100)
 
@@ -146,9 +146,9 @@ def test_correlated_uncertain_assumptions_stay_for_the_inner_trials():
         ["y", "d"],
         correlations={("a", "b"): 0.8},
     )
-    found = xlmc.uncertainty(model, uncertain=["a,b"], outer=500, inner=20)
-    assert bands_of(found)["SD"].high.value == pytest.approx(0.0, abs=1e-12)
-    ratio = bands_of(found)["mean"].high.value / bands_of(found, "d")["mean"].high.value
+    result = xlmc.uncertainty(model, uncertain=["a,b"], outer=500, inner=20)
+    assert bands_of(result)["SD"].high.value == pytest.approx(0.0, abs=1e-12)
+    ratio = bands_of(result)["mean"].high.value / bands_of(result, "d")["mean"].high.value
     r = 2 * math.sin(math.pi * 0.8 / 6)  # Pearson's, of a normal copula
     assert ratio == pytest.approx(math.sqrt((1 + r) / (1 - r)), rel=0.15)
 
@@ -229,8 +229,8 @@ def test_draws_that_filters_keep_differently_say_as_much_as_fewer():
     model = xlmc.model(
         lambda m, z: {"y": m + z, "kept": z < m}, {"m": xlmc.Uniform(0, 1), "z": xlmc.Uniform(0, 1)}, ["y"], ["kept"]
     )
-    found = xlmc.uncertainty(model, uncertain=["m"], outer=400, inner=200)
-    assert found["y"].effective == pytest.approx(300, rel=0.02)
+    result = xlmc.uncertainty(model, uncertain=["m"], outer=400, inner=200)
+    assert result["y"].effective == pytest.approx(300, rel=0.02)
 
 
 def test_trials_that_errors_take_are_told():

@@ -244,7 +244,7 @@ def test_arguments_of_plain_formulas(gives, table):
 def test_an_array_formula_refuses_a_range_where_one_cell_is_wanted(ways, formula, expected, dynamic):
     anchor = CellContent(None, Formula(formula, 1, 8, array=Area("S", 1, 8, 3, 8), dynamic=dynamic))
     answers = ways(CELLS | {"H1": anchor}, ["H1"])
-    assert {way: found[0] for way, found in answers.items()} == dict.fromkeys(
+    assert {way: result[0] for way, result in answers.items()} == dict.fromkeys(
         answers, expected.text if isinstance(expected, ErrorCode) else expected
     )
 
@@ -274,8 +274,8 @@ def test_a_whole_column_by_index_0_gives_the_cell_beside_the_formula(gives, plac
 
 def test_every_class_of_arguments_is_in_a_row_of_the_registry():
     rows = set(REGISTRY.values())
-    found = {row.parameter(i).ranges for row in rows for i in range(len(row.parameters))}
-    assert found == set(Ranges)
+    result = {row.parameter(i).ranges for row in rows for i in range(len(row.parameters))}
+    assert result == set(Ranges)
     values = [row.name for row in rows if any(p.ranges is Ranges.CELLS and not p.ranged for p in row.parameters)]
     assert values == []
 

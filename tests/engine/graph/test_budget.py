@@ -159,8 +159,8 @@ def test_portions_of_a_block_give_the_numbers_of_the_whole(lower, monkeypatch):
 
     def columns():
         evaluator = TrackingEvaluator(lowering.dag, nodes[:1], nodes[1:])
-        found = [*evaluator.filters(draws, 200), *evaluator.forecasts(survivors)]
-        return [(c.values.tolist(), None if c.codes is None else c.codes.tolist()) for c in found], evaluator._portion
+        result = [*evaluator.filters(draws, 200), *evaluator.forecasts(survivors)]
+        return [(c.values.tolist(), None if c.codes is None else c.codes.tolist()) for c in result], evaluator._portion
 
     whole, portion = columns()
     assert portion > 200

@@ -83,8 +83,8 @@ VOLATILE = [name for name in OURS if name in REGISTRY and REGISTRY[name].volatil
 @pytest.mark.parametrize("name", VOLATILE)
 def test_what_changes_by_itself_gives_values_or_a_refusal_with_the_cell(outcome, name):
     """A book that lists what is refused does not compute these."""
-    found = outcome(f"{name}({','.join(['A1'] * _limits(name)[0])})")
-    assert "S!Z9" in found if isinstance(found, str) else found.shape == (3,)
+    result = outcome(f"{name}({','.join(['A1'] * _limits(name)[0])})")
+    assert "S!Z9" in result if isinstance(result, str) else result.shape == (3,)
 
 
 @pytest.mark.parametrize("at", range(3), ids=["left out", "ranges", "arrays and references that lead nowhere"])

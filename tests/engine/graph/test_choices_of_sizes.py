@@ -111,5 +111,5 @@ CELLS_OF_REFERENCES = {"A1": 1.0, "C1": "10", "D1": 7.0, "B2": 6.0, "D2": "y"}
     ],
 )
 def test_a_reference_that_varies_has_the_empty_cells_and_texts_of_a_range(trials, formula, answers):
-    for found in trials(CELLS_OF_REFERENCES, formula, [1.0, 2.0, 3.0]).values():
-        assert found == answers
+    for result in trials(CELLS_OF_REFERENCES, formula, [1.0, 2.0, 3.0]).values():
+        assert result == answers

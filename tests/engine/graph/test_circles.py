@@ -155,8 +155,8 @@ def test_a_switch_between_two_ways_round_is_no_circle(ways):
 
 def test_two_cells_that_read_each_other_in_turn_are_no_circle(trials):
     cells = {"B1": "=IF(A1>0.5,B2*2,5)", "B2": "=IF(A1>0.5,6,B1+1)"}
-    found = trials(cells, "10*B1+B2+0*A1", [0.2, 0.7, 0.4], constants=False)
-    assert set(map(tuple, found.values())) == {(56.0, 126.0, 56.0)}
+    result = trials(cells, "10*B1+B2+0*A1", [0.2, 0.7, 0.4], constants=False)
+    assert set(map(tuple, result.values())) == {(56.0, 126.0, 56.0)}
 
 
 @pytest.mark.parametrize(
@@ -175,8 +175,8 @@ def test_two_cells_that_read_each_other_in_turn_are_no_circle(trials):
 )
 def test_trials_that_read_the_own_cell_are_errors(trials, lower, formula):
     cells = {"B1": f"={formula}", "B2": 5.0, "C1": "y", "C2": "x"}
-    found = trials(cells, "B1+A1*0", [0.2, 0.7, 0.4], constants=False)
-    assert set(map(tuple, found.values())) == {(5.0, "#CALC!", 5.0)}
+    result = trials(cells, "B1+A1*0", [0.2, 0.7, 0.4], constants=False)
+    assert set(map(tuple, result.values())) == {(5.0, "#CALC!", 5.0)}
     lowering, _ = lower({"A1": 0.0, **cells}, ["A1"], ["B1"])
     assert [(str(notice.where), "#CALC!" in notice.message) for notice in lowering.notices] == [("S!B1", True)]
 
@@ -200,13 +200,13 @@ def test_a_long_column_that_points_through_itself(lower):
 
 def test_verify_computes_what_is_pointed_through_and_names_the_circles(workbook):
     cells = {"A1": 1.0, "A2": 2.0, "A3": ("=SUM(A1:OFFSET(A3,-1,0))", 3.0), "B1": ("=B2+1", 0.0), "B2": ("=B1", 0.0)}
-    found = {check.cell.a1: check for check in verify(workbook(cells)).cells}
-    assert {address: check.status for address, check in found.items()} == {
+    result = {check.cell.a1: check for check in verify(workbook(cells)).cells}
+    assert {address: check.status for address, check in result.items()} == {
         "A3": Status.MATCHED,
         "B1": Status.UNSUPPORTED,
         "B2": Status.UNSUPPORTED,
     }
-    assert "in a circle: S!B" in found["B1"].reason
+    assert "in a circle: S!B" in result["B1"].reason
 
 
 @pytest.fixture(scope="module")
@@ -226,9 +226,9 @@ def test_a_run_names_the_cell_whose_trials_are_errors(turning, engine):
 
 
 def test_the_base_case_of_a_circle_has_its_errors(turning):
-    found = errors_at_base(turning)
-    assert {str(cell) for cell in found.roots} == {"S!B1", "S!B2"}
-    assert {str(cell) for cell in found.others} == {"S!C1"}
+    result = errors_at_base(turning)
+    assert {str(cell) for cell in result.roots} == {"S!B1", "S!B2"}
+    assert {str(cell) for cell in result.others} == {"S!C1"}
 
 
 def test_the_engine_formulas_refuses_circles(turning):

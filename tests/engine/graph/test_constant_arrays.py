@@ -88,9 +88,9 @@ def test_sums_of_many_computed_arrays_equal_those_of_numpy(lower, load_program, 
 def test_a_constant_matrix_and_vectors_that_vary(lower, load_program, engine, bounded):
     drawn = {f"Data!{at(r, 52)}": f"=S!A$1*{r}+1" for r in range(ROWS)}
     formulas = book_of(lambda k: f"=SUMPRODUCT({RANGE}*Data!$BA$1:$BA${ROWS})*{k}")
-    found, dag = numbers(lower, load_program, engine, matrix() | drawn | formulas)
+    result, dag = numbers(lower, load_program, engine, matrix() | drawn | formulas)
     expected = [(MATRIX * (x * np.arange(ROWS) + 1)[:, None]).sum() * sum(range(FORMULAS)) for x in DRAWS]
-    np.testing.assert_allclose(found, expected, rtol=1e-13)
+    np.testing.assert_allclose(result, expected, rtol=1e-13)
     assert dag.kept < 2 * MATRIX.nbytes
 
 
@@ -114,10 +114,10 @@ def test_an_error_or_a_text_in_the_matrix(lower, evaluate, monkeypatch, content,
     lowering, targets = made_for(lower, cells, [f"B{k}" for k in range(1, 40)])
     dag = lowering.dag
     assert forgotten(dag)
-    found = evaluate(NumpyProgram.of(lowering, [], targets, frozenset()).evaluator(9), {"A1": DRAWS}, 9)
+    result = evaluate(NumpyProgram.of(lowering, [], targets, frozenset()).evaluator(9), {"A1": DRAWS}, 9)
     slow = evaluate(TrackingEvaluator(dag, [], [lowering.target(each) for each in targets]), {"A1": DRAWS}, 9)
-    assert found == slow
-    values = found[1][-1][1]
+    assert result == slow
+    values = result[1][-1][1]
     if expected is None:
         np.testing.assert_allclose(values, 39 * (MATRIX.sum() - MATRIX[2, 2]) * DRAWS, rtol=1e-13)
     else:

@@ -29,10 +29,10 @@ FORMULAS = {
 
 
 def test_every_use_of_a_text_as_a_number_reads_it_by_the_calendar_of_the_workbook(ways):
-    for way, found in ways(CELLS, list(FORMULAS), date1904=True).items():
-        assert dict(zip(FORMULAS, found, strict=True)) == FORMULAS, way
-    for way, found in ways(CELLS, ["A1+B1"]).items():
-        assert found == [DAY + 1_462 + 3], way
+    for way, result in ways(CELLS, list(FORMULAS), date1904=True).items():
+        assert dict(zip(FORMULAS, result, strict=True)) == FORMULAS, way
+    for way, result in ways(CELLS, ["A1+B1"]).items():
+        assert result == [DAY + 1_462 + 3], way
 
 
 def test_a_function_of_such_a_workbook_can_be_sent_to_another_process():

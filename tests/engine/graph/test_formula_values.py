@@ -223,17 +223,17 @@ def test_array_formulas(computed, formula, expected):
     filled = {str(cell): CellContent(None) for cell in area.cells()}
     anchor = CellContent(None, Formula(formula, 9, 8, array=area))
     readers = {f"P{20 + i}": f"={str(cell).removeprefix('S!')}" for i, cell in enumerate(area.cells())}
-    found = computed({**filled, "S!H9": anchor, **readers})
+    result = computed({**filled, "S!H9": anchor, **readers})
     wanted = [item for row in expected for item in row]
-    got = [found[f"P{20 + i}"].got for i in range(len(wanted))]
+    got = [result[f"P{20 + i}"].got for i in range(len(wanted))]
     assert all(_same(g, w) for g, w in zip(got, wanted, strict=True)), got
 
 
 @pytest.mark.parametrize("lost", LOST)
 def test_a_reference_that_leads_nowhere_is_a_value_in_every_function_of_ranges(computed, lost):
     cells = {f"H{9 + 2 * i}": f"={formula.replace('{}', lost)}" for i, formula in enumerate(OF_RANGES)}
-    found = computed(cells)
-    got = {formula: found[cell].got for cell, formula in zip(cells, OF_RANGES, strict=True)}
+    result = computed(cells)
+    got = {formula: result[cell].got for cell, formula in zip(cells, OF_RANGES, strict=True)}
     assert [f"{formula}: {value}" for formula, value in got.items() if value is not ErrorCode.REF] == []
     rescued = computed({cell: f"=IFERROR({formula[1:]},-1)" for cell, formula in cells.items()})
     assert [cells[cell] for cell in cells if rescued[cell].got != -1.0] == []
@@ -242,10 +242,10 @@ def test_a_reference_that_leads_nowhere_is_a_value_in_every_function_of_ranges(c
 def test_a_reference_that_leads_nowhere_in_some_trials_is_an_error_in_these(book):
     cells = {**CELLS, "H9": "=SUM(A1,INDEX(B1:B3,A1))", "H10": "=IFERROR(SUM(CHOOSE(A1,B1:B2,B3)),-1)"}
     model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "H9", "rescued": "H10"})
-    found = model.function({"a": [1.0, 3.0, 7.0]})
-    assert found["sum"][:2].tolist() == [11.0, 33.0]
-    assert np.isnan(found["sum"][2])
-    assert found["rescued"].tolist() == [30.0, -1.0, -1.0]
+    result = model.function({"a": [1.0, 3.0, 7.0]})
+    assert result["sum"][:2].tolist() == [11.0, 33.0]
+    assert np.isnan(result["sum"][2])
+    assert result["rescued"].tolist() == [30.0, -1.0, -1.0]
 
 
 def test_array_formulas_of_assumptions_stay_on_the_fast_path(book, monkeypatch):
@@ -263,8 +263,8 @@ def test_array_formulas_of_assumptions_stay_on_the_fast_path(book, monkeypatch):
 
 def test_a_spill_is_read_whole(computed):
     anchor = CellContent(None, Formula("A1:A3*2", 9, 8, array=Area("S", 9, 8, 11, 8), dynamic=True))
-    found = computed({"H9": anchor, "J1": "=SUM(_xlfn.ANCHORARRAY(H9))"})
-    assert found["J1"].got == 12.0
+    result = computed({"H9": anchor, "J1": "=SUM(_xlfn.ANCHORARRAY(H9))"})
+    assert result["J1"].got == 12.0
 
 
 def test_arrays_whose_size_varies_by_trial(book):
@@ -328,8 +328,8 @@ def test_indirect_reference_to_itself_is_a_circle(book):
 
 
 def test_implicit_intersection_picks_the_cell_beside(computed):
-    found = computed({"H2": "=A1:A3*2", "B9": "=A1:B1*2", "H3": "=@A1:A3"})
-    assert [found[cell].got for cell in ("H2", "B9", "H3")] == [4.0, 20.0, 3.0]
+    result = computed({"H2": "=A1:A3*2", "B9": "=A1:B1*2", "H3": "=@A1:A3"})
+    assert [result[cell].got for cell in ("H2", "B9", "H3")] == [4.0, 20.0, 3.0]
 
 
 def test_the_clock_is_held_at_what_excel_saved(book):

@@ -61,8 +61,8 @@ def _written(path, filtered):
 )
 def test_totals_leave_out_what_a_filter_hides(tmp_path, filtered, which):
     book = _written(tmp_path / "book.xlsx", filtered)
-    found = {check.cell.row - 21: check.got for check in verify(book).cells}
-    assert [found[row] for row in range(len(FORMULAS))] == [pytest.approx(each[which]) for each in FORMULAS.values()]
+    result = {check.cell.row - 21: check.got for check in verify(book).cells}
+    assert [result[row] for row in range(len(FORMULAS))] == [pytest.approx(each[which]) for each in FORMULAS.values()]
 
 
 def test_the_filter_of_a_table_counts(workbook, table):

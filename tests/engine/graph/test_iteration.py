@@ -23,10 +23,10 @@ def iterated(lower, load_program):
     """`iterated(cells, target, draws, iteration)`: what the target is in each trial, A1 being drawn, in each engine."""
 
     def compute(cells, target, draws, iteration=FINE, **of_workbook):
-        lowering, found = lower({"A1": 0.0, **cells}, ["A1"], [target], iteration=iteration, **of_workbook)
+        lowering, result = lower({"A1": 0.0, **cells}, ["A1"], [target], iteration=iteration, **of_workbook)
         answers = []
         for engine in ("numpy", "jit"):
-            evaluator = load_program(engine)(lowering, [], found, frozenset()).evaluator(len(draws))
+            evaluator = load_program(engine)(lowering, [], result, frozenset()).evaluator(len(draws))
             list(evaluator.filters({"A1": np.array(draws)}, len(draws)))
             (column,) = evaluator.forecasts(np.arange(len(draws)))
             answers.append(column)
@@ -40,8 +40,8 @@ def iterated(lower, load_program):
 
 def test_a_circle_ends_where_its_equations_hold(iterated):
     rates = np.linspace(0.0, 0.5, 40)
-    found = iterated({key: LOAN[key] for key in ("B1", "B2", "B3")}, "B3", rates)
-    assert found == pytest.approx(1000 * (1 + rates / 2) / (1 - rates / 2), rel=1e-12)
+    result = iterated({key: LOAN[key] for key in ("B1", "B2", "B3")}, "B3", rates)
+    assert result == pytest.approx(1000 * (1 + rates / 2) / (1 - rates / 2), rel=1e-12)
 
 
 ORDERS = [
@@ -82,15 +82,15 @@ def _by_hand(drawn, iteration):
 def test_each_trial_ends_by_itself(iterated, iteration):
     draws = np.linspace(0.0, 1.9, 9)
     cells = {"B1": ("=B1/2+C1/4+A1", 0.25), "C1": ("=B1*A1", 4.0)}
-    found = iterated(cells, "B1", draws, iteration)
-    assert found == [_by_hand(drawn, iteration) for drawn in draws.tolist()]
-    assert iterated(cells, "B1", draws[4:5], iteration) == found[4:5]
+    result = iterated(cells, "B1", draws, iteration)
+    assert result == [_by_hand(drawn, iteration) for drawn in draws.tolist()]
+    assert iterated(cells, "B1", draws[4:5], iteration) == result[4:5]
 
 
 def test_errors_stay(iterated):
-    found = iterated({"B1": ("=IF(A1>0.5,1/0,B1/2)", 1.0)}, "B1", [0.2, 0.7], Iteration(3, 0.0))
-    assert found[0] == 0.125
-    assert np.isnan(found[1])
+    result = iterated({"B1": ("=IF(A1>0.5,1/0,B1/2)", 1.0)}, "B1", [0.2, 0.7], Iteration(3, 0.0))
+    assert result[0] == 0.125
+    assert np.isnan(result[1])
     kept = iterated({"B1": ("=IFERROR(1/(B1-1),7)+A1", 1.0)}, "B1", [0.0, 1.0], Iteration(1, 0.0))
     assert kept == [7.0, 8.0]
 
@@ -141,19 +141,19 @@ STARTS = [
 
 @pytest.mark.parametrize(("cells", "forecast", "depends"), STARTS, ids=["loan", "root", "count", "threshold"])
 def test_stability_says_when_the_answer_depends_on_the_start(loan, cells, forecast, depends):
-    found = stability(loan(cells, forecast, Iteration(25, 1e-12)), trials=100, seed=1).findings
-    assert [(one.cell.a1, one.level.name) for one in found if one.kind == "start"] == [("B1", "WRONG")] * depends
+    result = stability(loan(cells, forecast, Iteration(25, 1e-12)), trials=100, seed=1).findings
+    assert [(one.cell.a1, one.level.name) for one in result if one.kind == "start"] == [("B1", "WRONG")] * depends
 
 
 def test_verify_allows_for_where_excel_stopped(workbook):
     cells = {"A1": 0.1, "B1": 1000.0, "B2": ("=A1*(B1+B3)/2", 105.2631), "B3": ("=B1+B2", 1105.263)}
     cells |= {"C1": ("=B3*2", 2210.5), "D1": ("=D2+1", 5.0), "D2": ("=D1", 5.0)}
-    found = {check.cell.a1: check.status for check in verify(workbook(cells, iteration=Iteration())).cells}
+    result = {check.cell.a1: check.status for check in verify(workbook(cells, iteration=Iteration())).cells}
     wrong = {"C1", "D1"}
-    assert found == {a: Status.DIFFERING if a in wrong else Status.MATCHED for a in ("B2", "B3", "C1", "D1", "D2")}
+    assert result == {a: Status.DIFFERING if a in wrong else Status.MATCHED for a in ("B2", "B3", "C1", "D1", "D2")}
 
 
 def test_verify_of_a_circle_that_offset_leads_round(workbook):
     cells = {"B1": ("=SUM(OFFSET(B1,1,0,2,1))", 0.0), "B2": ("=OFFSET(B2,-1,0)/2", 0.0), "B3": ("=B1*0", 0.0)}
-    found = verify(workbook(cells, iteration=Iteration())).cells
-    assert [check.status for check in found] == [Status.MATCHED] * 3
+    result = verify(workbook(cells, iteration=Iteration())).cells
+    assert [check.status for check in result] == [Status.MATCHED] * 3

@@ -187,13 +187,13 @@ def drawn(lower):
         node = lowering.target(targets[0])
         careful = TrackingEvaluator(lowering.dag, [], [node])
         careful.filters(draws, n)
-        found = _shown(careful.forecasts(np.arange(n))[0])
+        result = _shown(careful.forecasts(np.arange(n))[0])
         for engine in engines:
             evaluator = ENGINES[engine].load()(lowering, [], targets, frozenset()).evaluator(n)
             evaluator.filters(draws, n)
             again = _shown(evaluator.forecasts(np.arange(n))[0])
-            assert all(agree(a, b) for a, b in zip(again, found, strict=True)), (engine, again, found)
-        return found
+            assert all(agree(a, b) for a, b in zip(again, result, strict=True)), (engine, again, result)
+        return result
 
     return evaluate
 
@@ -213,9 +213,9 @@ def _shown(column):
 def test_of_draws(drawn, number, formula, expected):
     """In the compiled engine every fourth."""
     draws = {name: np.full(3, value) for name, value in NUMBERS.items()}
-    found = drawn(f"={formula}", draws, engines=ENGINES_HERE if number % 4 == 0 else ["numpy"])
+    result = drawn(f"={formula}", draws, engines=ENGINES_HERE if number % 4 == 0 else ["numpy"])
     wanted = "text" if isinstance(expected, str) else expected
-    assert all(same(got, wanted) for got in found), found
+    assert all(same(got, wanted) for got in result), result
 
 
 def test_which_lambda_is_called_may_vary(drawn):
@@ -312,8 +312,8 @@ def test_a_lambda_named_like_a_function_of_excel(drawn, formula, expected):
 def test_each_trial_ends_its_calls_by_itself(drawn, number, formula):
     """In the compiled engine every fourth."""
     draws = np.random.default_rng(2).uniform(1, 12, 12)
-    found = drawn(f"={formula}", {"A1": draws}, DEEP, ENGINES_HERE if number % 4 == 0 else ["numpy"])
-    assert found == pytest.approx([DEEP_CALLS[formula](x) for x in draws], rel=1e-10)
+    result = drawn(f"={formula}", {"A1": draws}, DEEP, ENGINES_HERE if number % 4 == 0 else ["numpy"])
+    assert result == pytest.approx([DEEP_CALLS[formula](x) for x in draws], rel=1e-10)
 
 
 def test_results_of_all_kinds_stay_with_their_trials(drawn):
@@ -358,8 +358,8 @@ def test_calls_with_more_arguments_may_go_less_deep(workbook, formula, expected,
 
 def test_trials_that_never_end_are_num_and_the_others_are_not(drawn, monkeypatch):
     monkeypatch.setattr("xlmc.engine.graph.recursion.DEEPEST", 240)
-    found = drawn("=IF(A1>1,Forever(A1),A1)+Sum.Down(A1*100)", {"A1": [0.5, 2.0, 1.0, 90.0]}, DEEP)
-    assert found == [1275.5, ErrorCode.NUM, 5051.0, ErrorCode.NUM]
+    result = drawn("=IF(A1>1,Forever(A1),A1)+Sum.Down(A1*100)", {"A1": [0.5, 2.0, 1.0, 90.0]}, DEEP)
+    assert result == [1275.5, ErrorCode.NUM, 5051.0, ErrorCode.NUM]
     assert drawn("=Sum.Down(A1)", {"A1": [3.0, 299.5, 2.0, 9000.0]}, DEEP)[::2] == [6.0, 3.0]
 
 

@@ -19,8 +19,8 @@ def nodes(lower):
     return make
 
 
-def names(found):
-    return [node.function.name if isinstance(node, Apply) else type(node).__name__ for node in found]
+def names(result):
+    return [node.function.name if isinstance(node, Apply) else type(node).__name__ for node in result]
 
 
 @pytest.mark.parametrize(
@@ -77,8 +77,8 @@ def test_a_held_cell_is_its_value(lower):
 )
 def test_what_is_known_before_the_run(lower, formula, known):
     lowering, (target,) = lower({"B1": "x", "C1": f"={formula}"}, ["A1"], ["C1"])
-    found = lowering.known(target)
-    assert (None if found is None else found.objects().tolist()) == known
+    result = lowering.known(target)
+    assert (None if result is None else result.objects().tolist()) == known
 
 
 def test_a_formula_that_gives_nothing_gives_zero(lower):

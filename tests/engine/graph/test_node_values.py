@@ -30,10 +30,10 @@ def array(rows, trials=1):
     ],
 )
 def test_what_one_array_lacks_is_na(one, other, as_one, as_other):
-    found = align([array(one), constant(7.0), array(other, trials=2)])
-    assert found[0].objects()[0].tolist() == as_one
-    assert found[1].objects().tolist() == [7.0]
-    assert [trial.tolist() for trial in found[2].objects()] == [as_other] * 2
+    result = align([array(one), constant(7.0), array(other, trials=2)])
+    assert result[0].objects()[0].tolist() == as_one
+    assert result[1].objects().tolist() == [7.0]
+    assert [trial.tolist() for trial in result[2].objects()] == [as_other] * 2
 
 
 def test_an_array_in_a_cell_of_an_array_is_calc_but_for_one_of_one_cell():

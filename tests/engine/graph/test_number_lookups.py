@@ -42,11 +42,11 @@ IFERROR(VLOOKUP(A1,D1:G6,2,FALSE),-1)  IF(A1>5,VLOOKUP(A1,D1:G6,2),0)  SUM(VLOOK
 def test_every_lookup_finds_what_its_own_body_finds(trials, monkeypatch, number, formula):
     """In the compiled engine every third."""
     table = TABLE | MIXED | ROWS
-    found = trials(table, formula, KEYS) if number % 3 == 0 else trials(table, formula, KEYS, ["numpy"])
-    assert len({repr(answers) for answers in found.values()}) == 1, found
+    result = trials(table, formula, KEYS) if number % 3 == 0 else trials(table, formula, KEYS, ["numpy"])
+    assert len({repr(answers) for answers in result.values()}) == 1, result
     with monkeypatch.context() as as_written:
         as_written.setattr(NumberLookups, "apply", lambda *_: None)
-        assert trials(table, formula, KEYS, ["numpy"], constants=False) == {"numpy": found["numpy"]}
+        assert trials(table, formula, KEYS, ["numpy"], constants=False) == {"numpy": result["numpy"]}
 
 
 def searches(lower, cells, *targets):
@@ -70,6 +70,6 @@ def test_an_index_of_a_position_elsewhere_looks_at_each_cell(ways):
     """B1 is a position that a lookup gave, B2 one that may be 0 or too large: filled down, one formula takes both."""
     cells = {"A1": 25.0, "A2": 2.0, **TABLE, "B1": "=MATCH(A1,$D$1:$D$6)", "B2": "=A2*3"}
     formulas = [("C1", "INDEX($E$1:$E$6,B1)"), ("C2", "INDEX($E$1:$E$6,B2)"), ("C3", "INDEX($E$1:$E$6,B2+1)")]
-    found = ways(cells, formulas, held=tuple(TABLE))
-    assert found["constants"] == [0.0, 27.0, "#REF!"]
-    assert len({repr(answers) for answers in found.values()}) == 1
+    result = ways(cells, formulas, held=tuple(TABLE))
+    assert result["constants"] == [0.0, 27.0, "#REF!"]
+    assert len({repr(answers) for answers in result.values()}) == 1

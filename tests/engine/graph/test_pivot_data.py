@@ -160,8 +160,8 @@ ASKED = {
 
 def test_fixed_items(book):
     cells = {f"A{i}": f"={text}" for i, text in enumerate(ASKED, start=1)}
-    found = [check.got for check in verify(read_workbook(book(cells))).cells]
-    assert dict(zip(ASKED, found, strict=True)) == ASKED
+    result = [check.got for check in verify(read_workbook(book(cells))).cells]
+    assert dict(zip(ASKED, result, strict=True)) == ASKED
 
 
 @pytest.mark.parametrize("engine", ["numpy", "jit"])

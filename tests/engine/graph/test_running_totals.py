@@ -188,9 +188,9 @@ def test_upwards_no_more_differs_than_rounding(run, name):
     formulas = {f"D{r}": f"={name}(B{r}:B${rows})" for r in range(1, rows + 1)}
     draws = {"A1": [0.9, 1.0, 1.1]}
     together = run(cells | formulas, draws, [f"D{r}" for r in (1, 2, 100)]).forecasts
-    for at, found in zip((1, 2, 100), together, strict=True):
+    for at, result in zip((1, 2, 100), together, strict=True):
         by_itself = np.array(alone(run, cells | formulas, draws, f"D{at}"))
-        np.testing.assert_allclose(found, by_itself, rtol=2 * rows * 2.0**-53, atol=0)
+        np.testing.assert_allclose(result, by_itself, rtol=2 * rows * 2.0**-53, atol=0)
 
 
 def test_upwards_the_digits_do_not_depend_on_which_ranges_there_are(run):

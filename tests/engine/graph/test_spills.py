@@ -22,8 +22,8 @@ def spilling(text, area, *values, dynamic=True):
 def got(workbook):
     def compute(cells, *formulas):
         book = workbook({**CELLS, **cells, **{f"Z{50 + i}": f"={text}" for i, text in enumerate(formulas)}})
-        found = {str(check.cell): check.got for check in verify(book).cells}
-        return [found[f"S!Z{50 + i}"] for i in range(len(formulas))]
+        result = {str(check.cell): check.got for check in verify(book).cells}
+        return [result[f"S!Z{50 + i}"] for i in range(len(formulas))]
 
     return compute
 
@@ -61,9 +61,9 @@ def test_a_cell_that_the_spill_fills_spills_nothing(got):
 def test_a_spill_of_drawn_values(book):
     cells = {**CELLS, **spilling("A1:A3*2", (1, 8, 3, 8), 2.0, 4.0, 6.0), "J1": "=SUM(H1#)", "J2": "=ROWS(H1#)"}
     model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1", "rows": "J2"})
-    found = model.function({"a": [1.0, 5.0]})
-    assert found["sum"].tolist() == [12.0, 20.0]
-    assert found["rows"].tolist() == [3.0, 3.0]
+    result = model.function({"a": [1.0, 5.0]})
+    assert result["sum"].tolist() == [12.0, 20.0]
+    assert result["rows"].tolist() == [3.0, 3.0]
 
 
 @pytest.mark.parametrize("dynamic", [True, False])
@@ -81,18 +81,18 @@ def test_references_into_the_cells_that_an_array_formula_fills(book, formula, dy
     cells = {**CELLS, **filled, "J1": f"={formula}", "J2": '=CELL("contents",H3)'}
     inputs = {name: {"cell": name.upper(), "low": 0, "high": 9} for name in ("a1", "a2", "a3")}
     model = book(cells, inputs, {"sum": "J1", "third": "J2"})
-    found = model.function({"a1": [1.0, 5.0], "a2": [2.0, 3.0], "a3": [4.0, 0.5]})
-    assert found["sum"].tolist() == [14.0, 17.0]
-    assert found["third"].tolist() == [8.0, 1.0]
+    result = model.function({"a1": [1.0, 5.0], "a2": [2.0, 3.0], "a3": [4.0, 0.5]})
+    assert result["sum"].tolist() == [14.0, 17.0]
+    assert result["third"].tolist() == [8.0, 1.0]
 
 
 @pytest.mark.parametrize("saved", [(2.0, 4.0, 6.0), (0.0, 0.0, 0.0)])
 def test_every_cell_of_a_spill_varies(book, saved):
     cells = {**CELLS, **spilling("A1:A3*A1", (1, 8, 3, 8), *saved), "J1": "=SUM(H1#)", "J2": "=INDEX(H1#,3)"}
     model = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"sum": "J1", "third": "J2"})
-    found = model.function({"a": [1.0, 5.0]})
-    assert found["sum"].tolist() == [6.0, 50.0]
-    assert found["third"].tolist() == [3.0, 15.0]
+    result = model.function({"a": [1.0, 5.0]})
+    assert result["sum"].tolist() == [6.0, 50.0]
+    assert result["third"].tolist() == [3.0, 15.0]
 
 
 def test_a_spill_whose_size_varies_is_what_each_trial_gives(book):
@@ -150,8 +150,8 @@ def test_what_a_smaller_spill_does_not_fill_is_blank(book):
     filled = spilling("_xlfn._xlws.FILTER(A1:A3,A1:A3>2.5)", (1, 8, 2, 8), 5.0, 3.0)
     cells = {**CELLS, **filled, "J1": "=SUM(H1:H2)", "J2": "=COUNT(H1:H2)", "J3": "=ISBLANK(H2)+0", "J4": "=H2"}
     forecasts = {"sum": "J1", "count": "J2", "blank": "J3", "second": "J4"}
-    found = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, forecasts).function({"a": [5.0, 1.0]})
-    assert {name: values.tolist() for name, values in found.items()} == {
+    result = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, forecasts).function({"a": [5.0, 1.0]})
+    assert {name: values.tolist() for name, values in result.items()} == {
         "sum": [8.0, 3.0],
         "count": [2.0, 1.0],
         "blank": [0.0, 1.0],
@@ -162,5 +162,5 @@ def test_what_a_smaller_spill_does_not_fill_is_blank(book):
 def test_a_spill_that_is_an_error_fills_its_own_cell_alone(book):
     filled = spilling("_xlfn._xlws.FILTER(A1:A3,A1:A3>2.5)/(A1>2)", (1, 8, 2, 8), 5.0, 3.0)
     cells = {**CELLS, **filled, "J1": "=COUNTA(H1:H2)", "J2": "=COUNT(H1:H2)"}
-    found = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"a": "J1", "n": "J2"}).function({"a": [5.0, 1.0]})
-    assert (found["a"].tolist(), found["n"].tolist()) == ([2.0, 1.0], [2.0, 0.0])
+    result = book(cells, {"a": {"cell": "A1", "low": 0, "high": 9}}, {"a": "J1", "n": "J2"}).function({"a": [5.0, 1.0]})
+    assert (result["a"].tolist(), result["n"].tolist()) == ([2.0, 1.0], [2.0, 0.0])

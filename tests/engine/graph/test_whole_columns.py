@@ -220,7 +220,7 @@ def differing(run, table, array=False):
 
     Where such a block leaves the fast path each is asked for alone, to see what it gives there by itself.
     """
-    found, left = {}, [[*table][start : start + 12] for start in range(0, len(table), 12)]
+    result, left = {}, [[*table][start : start + 12] for start in range(0, len(table), 12)]
     while left:
         some = left.pop()
         cells = [Cell("S", 9, 26 + at) for at in range(len(some))]
@@ -233,8 +233,8 @@ def differing(run, table, array=False):
         if outcome.careful and len(some) > 1:
             left += [[formula] for formula in some]
         else:
-            found |= {formula: gives[0] for formula, gives in zip(some, outcome.forecasts, strict=True)}
-    return {formula: gives for formula, gives in found.items() if gives != table[formula]}
+            result |= {formula: gives[0] for formula, gives in zip(some, outcome.forecasts, strict=True)}
+    return {formula: gives for formula, gives in result.items() if gives != table[formula]}
 
 
 def test_a_whole_column_keeps_its_size(run):

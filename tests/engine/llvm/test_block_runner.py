@@ -129,11 +129,11 @@ def _check_first_trials(model, draws_given):
     for trials in (1, 63, 2047, 2048, 2049, 4095, BLOCK):
         for block, inputs in ((0, True), (3, False)):
             task = Task(block * BLOCK, trials, block == 0, inputs)
-            found, expected = (runners[whole].run(task) for whole in (True, False))
-            assert bits(found) == bits(expected), (trials, block)
-            assert (found.prior is None) == (expected.prior is None) == (block > 0)
+            result, expected = (runners[whole].run(task) for whole in (True, False))
+            assert bits(result) == bits(expected), (trials, block)
+            assert (result.prior is None) == (expected.prior is None) == (block > 0)
             for key, values in (expected.prior or {}).items():
-                assert values.tobytes() == found.prior[key].tobytes(), (trials, key)
+                assert values.tobytes() == result.prior[key].tobytes(), (trials, key)
     assert native(runners[True])._careful == 0
 
 
@@ -204,12 +204,12 @@ def test_where_all_trials_are_kept_they_are_written_to_the_room(book, forecasts,
         draws = dict(zip(GIVEN, rows[len(forecasts) :], strict=True))
         memory = BlockMemory(np.empty(BLOCK, np.int64), dict(draws), list(rows[: len(forecasts)]))
         task = Task(block * BLOCK, BLOCK, False)
-        found = runner.borrow(task, lambda memory=memory: memory)
-        assert bits(found) == bits(runner.run(task))
-        found = runner.borrow(task, lambda memory=memory: memory)
-        there = zip(forecasts, found.forecasts, memory.forecasts, strict=False)
+        result = runner.borrow(task, lambda memory=memory: memory)
+        assert bits(result) == bits(runner.run(task))
+        result = runner.borrow(task, lambda memory=memory: memory)
+        there = zip(forecasts, result.forecasts, memory.forecasts, strict=False)
         assert {name for name, column, memory in there if np.shares_memory(column, memory)} == in_room
-        assert np.shares_memory(found.accepted, memory.accepted) is bool(in_room)
+        assert np.shares_memory(result.accepted, memory.accepted) is bool(in_room)
 
 
 def test_a_block_that_ends_early_asks_for_no_room(book):

@@ -162,9 +162,9 @@ def _write_often(caches, text):
     os.environ[SWITCH] = "1"
     for _ in range(200):
         save_code("a", text * 5000)
-        found = load_code("a")
-        assert found is not None
-        assert set(found) in ({ord("x")}, {ord("y")})
+        result = load_code("a")
+        assert result is not None
+        assert set(result) in ({ord("x")}, {ord("y")})
 
 
 def test_two_programs_may_write_at_once(tmp_path):

@@ -36,7 +36,7 @@ def closest():
 
     q·2^e lies by p·π/2 where p/q is a convergent of the continued fraction of 2^e / (π/2).
     """
-    found = []
+    result = []
     with mpmath.workprec(400):
         for exponent in range(-52, -25):
             rest = mpmath.ldexp(1, exponent) / (mpmath.pi / 2)
@@ -46,9 +46,9 @@ def closest():
                 before, q = q, whole * q + before
                 if q >= 2**53:
                     break
-                found.append(q * 2.0**exponent)
+                result.append(q * 2.0**exponent)
                 rest = 1 / (rest - whole)
-    return np.array([x for x in found if 0.1 < x < LIMIT])
+    return np.array([x for x in result if 0.1 < x < LIMIT])
 
 
 GENERATOR = np.random.default_rng(3)
@@ -166,8 +166,8 @@ def test_angles_of_points(compiled, distance):
         exact = exactly(mpmath.atan2, y, x)
     sizes = np.abs(exact.nearest)
     fine = (sizes > 2.3e-308) | ((sizes == 0) & (exact.left == 0))  # Excel knows no smaller ones
-    found = compiled({"B1": "=ATAN2(A1,A2)"}, ("A1", "A2"))(x, y)[0]
-    assert distance(found[fine], exact.take(fine)) < 2
+    result = compiled({"B1": "=ATAN2(A1,A2)"}, ("A1", "A2"))(x, y)[0]
+    assert distance(result[fine], exact.take(fine)) < 2
 
 
 def test_on_the_axes(compiled):
@@ -188,9 +188,9 @@ def test_remainders_are_exact(compiled):
     x = np.concatenate([SIZES, -SIZES])
     x = x[np.abs(x) < 1e15]
     divisor = ARC_GENERATOR.choice([360.0, -360.0, 0.1, -0.1, 1.0, np.pi, 1e-3, -7.25], x.size)
-    found = compiled({"B1": "=MOD(A1,A2)"}, ("A1", "A2"))(x, divisor)[0]
+    result = compiled({"B1": "=MOD(A1,A2)"}, ("A1", "A2"))(x, divisor)[0]
     expected = tiny_to_zero(np.remainder(tiny_to_zero(x), divisor))
-    np.testing.assert_array_equal(found.view(np.int64), expected.view(np.int64))
+    np.testing.assert_array_equal(result.view(np.int64), expected.view(np.int64))
 
 
 def dividends(divisor):
@@ -207,8 +207,8 @@ def dividends(divisor):
         m = -k * pow(y, -1, 2**bits) % 2**bits
         m += 2**bits * int(ARC_GENERATOR.integers(0, 2 ** (54 - bits), endpoint=False))
         near.append(float((m * y + k) >> bits))
-    found = np.concatenate([SIZES[SIZES > 1e-240], near, np.nextafter(near, 0), np.nextafter(near, np.inf), [0.0]])
-    return np.concatenate([found, -found])
+    result = np.concatenate([SIZES[SIZES > 1e-240], near, np.nextafter(near, 0), np.nextafter(near, np.inf), [0.0]])
+    return np.concatenate([result, -result])
 
 
 @pytest.mark.parametrize("divisor", [100, 12, -12, 3, 5280, 32.174, 1e-9, 7e15, 1 + 2**-52, 2 - 2**-52, 0.1, 64])
@@ -216,8 +216,8 @@ def test_quotients_by_constants_are_exact(compiled, divisor):
     """To the last bit, and with the sign of a zero."""
     x = dividends(divisor)
     x = x[np.abs(x) < 1e290]
-    found = compiled({"B1": f"=A1/{divisor!r}"})(x)[0]
-    np.testing.assert_array_equal(found.view(np.int64), (x / divisor).view(np.int64))
+    result = compiled({"B1": f"=A1/{divisor!r}"})(x)[0]
+    np.testing.assert_array_equal(result.view(np.int64), (x / divisor).view(np.int64))
 
 
 @pytest.mark.parametrize("divisor", [100, -1e15, 1e-9, 1e-200])

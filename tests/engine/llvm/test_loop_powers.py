@@ -46,8 +46,8 @@ def exactly(function, precision, *of):
 
 
 def test_exponentials(compiled, distance):
-    found = compiled({"B1": "=EXP(A1)"})(EXPONENTS)[0]
-    assert distance(found, exactly(mpmath.exp, 200, EXPONENTS.tobytes())) < 0.75
+    result = compiled({"B1": "=EXP(A1)"})(EXPONENTS)[0]
+    assert distance(result, exactly(mpmath.exp, 200, EXPONENTS.tobytes())) < 0.75
 
 
 def test_logarithms(compiled, distance):
@@ -76,8 +76,8 @@ def bases_and_exponents():
 
 def test_powers(compiled, distance):
     x, y = bases_and_exponents()
-    found = compiled({"B1": "=A1^A2"}, ("A1", "A2"))(x, y)[0]
-    assert distance(found, exactly(mpmath.power, 300, x.tobytes(), y.tobytes())) < 0.9
+    result = compiled({"B1": "=A1^A2"}, ("A1", "A2"))(x, y)[0]
+    assert distance(result, exactly(mpmath.power, 300, x.tobytes(), y.tobytes())) < 0.9
 
 
 OF_POSITIVE = np.concatenate([np.exp(GENERATOR.uniform(-7, 7, N)), GENERATOR.uniform(0.9, 1.1, N), np.arange(1.0, 100)])
@@ -88,9 +88,9 @@ CONSTANT = {"whole": (4.0, 5.0, 7.0, -2.0, -3.0, 40.0), "others": (1.5, -0.5, 0.
 @pytest.mark.parametrize("which", CONSTANT)
 def test_powers_with_a_constant_exponent(compiled, distance, which):
     exponents = CONSTANT[which]
-    found = compiled({f"B{row}": f"=A1^{exponent!r}" for row, exponent in enumerate(exponents, 1)})(BASES[which])
+    result = compiled({f"B{row}": f"=A1^{exponent!r}" for row, exponent in enumerate(exponents, 1)})(BASES[which])
     bases = BASES[which]
-    for exponent, powers in zip(exponents, found, strict=True):
+    for exponent, powers in zip(exponents, result, strict=True):
         exact = exactly(mpmath.power, 300, bases.tobytes(), np.full(bases.size, exponent).tobytes())
         assert distance(powers, exact) < 0.9, exponent
 
@@ -131,12 +131,12 @@ def test_at_the_edges_errors_and_zeros_are_those_of_the_numpy_engine(lower, load
     """Trial by trial: the tests above see vectors."""
     a, b = (each.ravel() for each in np.meshgrid(EDGES, EDGES))
     lowering, targets = lower({"B1": f"={formula}"}, ["A1", "A2"], ["B1"])
-    found = []
+    result = []
     for engine in ("numpy", "jit"):
         evaluator = load_program(engine)(lowering, targets, [], frozenset()).evaluator(a.size)
-        found.append(evaluator.filters({"A1": a, "A2": b}, a.size)[0])
-    one, two = (np.zeros(a.size) if column.codes is None else column.codes for column in found)
+        result.append(evaluator.filters({"A1": a, "A2": b}, a.size)[0])
+    one, two = (np.zeros(a.size) if column.codes is None else column.codes for column in result)
     assert one.tolist() == two.tolist()
     fine = one == 0
-    np.testing.assert_allclose(found[1].values[fine], found[0].values[fine], rtol=4e-16, atol=0)
-    assert (found[1].values[fine] == 0).tolist() == (found[0].values[fine] == 0).tolist()
+    np.testing.assert_allclose(result[1].values[fine], result[0].values[fine], rtol=4e-16, atol=0)
+    assert (result[1].values[fine] == 0).tolist() == (result[0].values[fine] == 0).tolist()

@@ -29,8 +29,8 @@ def around(numbers):
     shares = np.array([1, 3, 9, 20, 23, 45]) * 2.0**-52
     with np.errstate(over="ignore", under="ignore"):
         near = [numbers * (1 + share) for share in (*shares, *-shares)]
-    found = np.concatenate([numbers, np.nextafter(numbers, 0), *near])
-    return found[np.isfinite(found)]
+    result = np.concatenate([numbers, np.nextafter(numbers, 0), *near])
+    return result[np.isfinite(result)]
 
 
 def any_size(n):
@@ -62,12 +62,12 @@ def signed(numbers):
 def of_body(name, *arguments):
     """What the careful path gives: numbers, and codes of errors."""
     function = REGISTRY[name]
-    found = function([Value.of_numbers(np.asarray(argument, float).reshape(-1)) for argument in arguments])
-    return np.broadcast_to(found.numbers, found.shape), np.broadcast_to(found.errors, found.shape)
+    result = function([Value.of_numbers(np.asarray(argument, float).reshape(-1)) for argument in arguments])
+    return np.broadcast_to(result.numbers, result.shape), np.broadcast_to(result.errors, result.shape)
 
 
-def same_bits(found, expected):
-    np.testing.assert_array_equal(found.view(np.int64), np.ascontiguousarray(expected, float).view(np.int64))
+def same_bits(result, expected):
+    np.testing.assert_array_equal(result.view(np.int64), np.ascontiguousarray(expected, float).view(np.int64))
 
 
 @pytest.fixture(scope="module")
@@ -94,10 +94,10 @@ def rounded_by_body(kind, name, digits):
 
 @pytest.mark.parametrize("kind", NUMBERS)
 def test_numbers_are_rounded_to_the_bits_of_the_body(rounded, kind):
-    for (name, digits), found in rounded(signed(NUMBERS[kind])).items():
+    for (name, digits), result in rounded(signed(NUMBERS[kind])).items():
         expected, errors = rounded_by_body(kind, name, digits)
         assert not errors.any()
-        same_bits(found, expected)
+        same_bits(result, expected)
 
 
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
@@ -109,10 +109,10 @@ DECIMALS = st.builds(lambda whole, digits: whole / 10.0**digits, st.integers(-(1
 @example([0.09999999999999995, 1.005, 2490399.9999999995, -2490399.9999999995, 0.285, 1e15 - 0.5])
 def test_any_numbers_are_rounded_to_the_bits_of_the_body(rounded, numbers):
     x = around(numbers)
-    for (name, digits), found in rounded(x).items():
+    for (name, digits), result in rounded(x).items():
         expected, errors = of_body(name, tiny_to_zero(x), *([] if digits is None else [[digits]]))
         assert not errors.any()
-        same_bits(found, expected)
+        same_bits(result, expected)
 
 
 def columns_of(lower, formulas, *draws):

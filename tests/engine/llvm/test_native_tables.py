@@ -34,10 +34,10 @@ def computing(patch):
 def test_the_bits_of_random_books_are_the_same(book, monkeypatch, side_by_side, processor, number):
     """These two books have every lookup of `table_books` and all but one of its functions, a power."""
     with side_by_side(1):
-        found = outcome_of(simulated(some_book(book, number), TRIALS, 5, engine="jit"))
+        result = outcome_of(simulated(some_book(book, number), TRIALS, 5, engine="jit"))
     with monkeypatch.context() as patch, side_by_side(0):
         computing(patch)
-        assert found == outcome_of(simulated(some_book(book, number), TRIALS, 5, engine="jit"))
+        assert result == outcome_of(simulated(some_book(book, number), TRIALS, 5, engine="jit"))
 
 
 ROWS = range(1, 13)
@@ -54,12 +54,12 @@ def sheet(formula):
 
 def functions(model, phase):
     """The functions that the loops of a phase compute; "picked" stands for one that is picked from a table."""
-    nodes, found = model.lowering.dag.nodes, []
+    nodes, result = model.lowering.dag.nodes, []
     for plan in phase._stages.loop_plans():
         for node, rule in plan.rules.items():
             read = {part.node for part in rule.operands if isinstance(part, Operand)}
-            found.append(nodes[node].function.name if read <= {*nodes[node].arguments} else "picked")
-    return found
+            result.append(nodes[node].function.name if read <= {*nodes[node].arguments} else "picked")
+    return result
 
 
 def built(book, formula):
@@ -81,13 +81,13 @@ def built(book, formula):
 def test_rows_of_a_sheet_share_tables_and_code(book, monkeypatch, side_by_side, processor, formula):
     with side_by_side(1):
         model, names, codes = built(book, formula)
-        found = outcome_of(simulated(model, TRIALS, 5, engine="jit"))
+        result = outcome_of(simulated(model, TRIALS, 5, engine="jit"))
     assert "picked" in names
     assert not {"ATAN", "SIN", "EXP", "^", "LN", "The cell found"} & {*names}
     with monkeypatch.context() as patch, side_by_side(0):
         computing(patch)
         computed, _, codes_of_computed = built(book, formula)
-        assert found == outcome_of(simulated(computed, TRIALS, 5, engine="jit"))
+        assert result == outcome_of(simulated(computed, TRIALS, 5, engine="jit"))
     assert len(codes) <= len(codes_of_computed) + 1
 
 

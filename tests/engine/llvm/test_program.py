@@ -133,9 +133,9 @@ def test_an_evaluator_takes_blocks_of_any_size_up_to_its_own(program):
     for values in ([1.0, 4.0], [0.0], [4.0] * 10, [-1.0, 16.0, 0.25]):
         draws = np.array(values)
         evaluator.filters({"A1": draws, "A2": draws}, draws.size)
-        (found,) = evaluator.forecasts(np.arange(draws.size))
+        (result,) = evaluator.forecasts(np.arange(draws.size))
         expected = [-1.0 if v == 0 else np.nan if v < 0 else 1 / v + v**0.5 for v in values]
-        assert found.as_floats() == pytest.approx(expected, rel=1e-15, nan_ok=True)
+        assert result.as_floats() == pytest.approx(expected, rel=1e-15, nan_ok=True)
 
 
 def test_blocks_are_small_where_many_values_are_kept(monkeypatch, program):

@@ -32,8 +32,8 @@ def march(rows, odd=()):
 
 
 def made(lower, rows, odd=()):
-    lowering, found = lower(march(rows, odd), ["A1", "A2"], ("G1", "D9"))
-    return JitProgram(lowering, [], found, frozenset())
+    lowering, result = lower(march(rows, odd), ["A1", "A2"], ("G1", "D9"))
+    return JitProgram(lowering, [], result, frozenset())
 
 
 @pytest.mark.parametrize("odd", [(), (20, 21, 50)])
@@ -51,10 +51,10 @@ def test_loops_of_one_shape_have_one_code(lower, compile_nothing, odd):
 
 def test_a_trial_that_errs_in_one_row_errs_alone(lower, side_by_side):
     cells = march(60) | {"G1": "=D60/(B30-B30*A3)", "A3": 0.5}
-    lowering, found = lower(cells, ["A1", "A2", "A3"], ["G1"])
+    lowering, result = lower(cells, ["A1", "A2", "A3"], ["G1"])
     draws = {"A1": np.full(5, 0.7), "A2": np.full(5, 60.0), "A3": np.array([0.5, 1.0, 0.5, 1.0, 0.25])}
     with side_by_side(0):  # so few trials are in no vector
-        evaluator = JitProgram(lowering, [], found, frozenset()).evaluator(5)
+        evaluator = JitProgram(lowering, [], result, frozenset()).evaluator(5)
     evaluator.filters(draws, 5)
     (column,) = evaluator.forecasts(np.arange(5))
     assert column.codes is not None
@@ -91,13 +91,13 @@ def test_loops_give_what_numpy_gives_and_one_trial_after_another_the_same_bits(l
     assert ways == {0, 1, 2}
     for n in (1, 777):
         draws = {"A1": np.random.default_rng(1).uniform(0.5, 0.9, n), "A2": np.random.default_rng(2).uniform(50, 70, n)}
-        found = {}
+        result = {}
         for way, program in made_of.items():
             evaluator = program.evaluator(n)
             evaluator.filters(draws, n)
-            found[way] = np.array([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
-        assert found[1].tobytes() == found[10**9].tobytes()
-        np.testing.assert_allclose(found[1], found["numpy"], rtol=1e-13, err_msg=f"{n} trials")
+            result[way] = np.array([column.as_floats() for column in evaluator.forecasts(np.arange(n))])
+        assert result[1].tobytes() == result[10**9].tobytes()
+        np.testing.assert_allclose(result[1], result["numpy"], rtol=1e-13, err_msg=f"{n} trials")
 
 
 def test_a_small_model_has_its_constants_in_its_code(lower, compile_nothing):

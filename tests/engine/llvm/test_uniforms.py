@@ -71,6 +71,6 @@ def test_a_model_draws_the_same_on_every_engine(book, kind, correlations):
     model = book(cells, BOOKS[kind], {"sum": "C1"}, correlations=correlations)
     one, other = (model.sampler(3, 500, engine) for engine in ("numpy", "jit"))
     for start in (0, 500, 77_000):
-        expected, found = one.draw(start), other.draw(start)
-        assert found.keys() == expected.keys()
-        assert all(np.array_equal(found[name], values) for name, values in expected.items())
+        expected, result = one.draw(start), other.draw(start)
+        assert result.keys() == expected.keys()
+        assert all(np.array_equal(result[name], values) for name, values in expected.items())

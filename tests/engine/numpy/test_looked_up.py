@@ -28,10 +28,10 @@ def runs(model):
 @pytest.mark.parametrize(("number", "tangents"), [*zip(range(6), cycle([True, False]))], indirect=["tangents"])
 def test_the_bits_of_random_books_are_the_same(book, monkeypatch, tangents, number):
     """The first four of these books have every function and every lookup of `table_books`."""
-    found = runs(some_book(book, number))
+    result = runs(some_book(book, number))
     with monkeypatch.context() as computing:
         computing.setattr(numpy_engine, "find_looked_up", lambda *_: {})
-        assert found == runs(some_book(book, number))
+        assert result == runs(some_book(book, number))
 
 
 def looked_up(model):

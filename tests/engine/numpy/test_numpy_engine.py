@@ -80,16 +80,16 @@ def test_values_do_not_depend_on_which_buffers_they_lie_in(run, evaluate, seed):
     made_of = run(cells, draws, forecasts, filters).program._made_of
     draws = {name: np.array(values) for name, values in draws.items()}
 
-    def found():
+    def result():
         return evaluate(NumpyProgram(*made_of).evaluator(20), draws, 20)
 
-    shared = found()
+    shared = result()
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Buffers, "free", lambda self, nodes: [])
         patch.setattr(Buffers, "exchange", lambda self, done, node, loose: self.take(node))
-        own = found()
+        own = result()
         patch.setattr(Buffers, "take", lambda self, node: None)
-        assert shared == own == found()
+        assert shared == own == result()
 
 
 HARMLESS = [
@@ -241,9 +241,9 @@ def test_an_evaluator_takes_blocks_of_any_size_up_to_its_own(lower):
     evaluator = NumpyProgram.of(lowering, [], [forecast], frozenset()).evaluator(10)
     for values in ([1.0, 4.0], [9.0], [4.0] * 10, [-1.0, 16.0]):
         evaluator.filters({"A1": np.array(values)}, len(values))
-        (found,) = evaluator.forecasts(np.arange(len(values)))
+        (result,) = evaluator.forecasts(np.arange(len(values)))
         expected = [value**0.5 + value if value > 0 else value - 1 for value in values]
-        assert found.as_floats().tolist() == expected
+        assert result.as_floats().tolist() == expected
 
 
 def test_a_careful_block_leaves_no_trace_in_the_next(lower):
@@ -251,8 +251,8 @@ def test_a_careful_block_leaves_no_trace_in_the_next(lower):
     evaluator = NumpyProgram.of(lowering, [filter_], [forecast], frozenset()).evaluator(2)
     for values, expected in (([1.0, 0.0], [1.0, None]), ([2.0, 4.0], [0.5, 0.25]), ([0.0, 4.0], [None, 0.25])):
         evaluator.filters({"A1": np.array(values)}, 2)
-        (found,) = evaluator.forecasts(np.arange(2))
-        assert [None if np.isnan(value) else value for value in found.as_floats()] == expected
+        (result,) = evaluator.forecasts(np.arange(2))
+        assert [None if np.isnan(value) else value for value in result.as_floats()] == expected
 
 
 def test_an_input_in_one_branch_only(run):

@@ -51,7 +51,7 @@ def test_held_numbers_change_nothing(tmp_path, formula, more, held):
         for _ in range(3):
             x, trials = rng.uniform(-1, 3, n), rng.permutation(n)[: n // 3]
             expected = made.whole.evaluator(n).filters({"x": x, **part}, n)[0].as_floats()
-            (found,) = (columns[0] for columns in function(x, None))
-            assert np.array_equal(found, expected, equal_nan=True)
+            (result,) = (columns[0] for columns in function(x, None))
+            assert np.array_equal(result, expected, equal_nan=True)
             (some,) = (columns[0].copy() for columns in function(x[trials], trials))
             assert np.array_equal(some, expected[trials], equal_nan=True)

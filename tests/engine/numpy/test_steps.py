@@ -53,8 +53,8 @@ def test_values_outlive_the_buffer_they_were_made_from(run, formula):
     [(2.5, 2.5), (True, True), (False, False)],
 )
 def test_a_constant_as_steps_take_it(item, plain):
-    found = plain_constant(constant(item))
-    assert (type(found), found) == (type(plain), plain)
+    result = plain_constant(constant(item))
+    assert (type(result), result) == (type(plain), plain)
 
 
 @pytest.mark.parametrize("item", ["x", None, ErrorCode.NA])

@@ -46,10 +46,10 @@ def test_values_lie_between_the_bounds(model):
     dag, ends, values = model
     known, reach = NodeBounds(dag, ends), 1.0
     for node in dag.upstream(list(values)):
-        found = known.of(node)
-        if node in values and found is not None:
-            low, high = found
-            reach = max(reach, 1e6, *(abs(end) for end in found if math.isfinite(end)))
+        result = known.of(node)
+        if node in values and result is not None:
+            low, high = result
+            reach = max(reach, 1e6, *(abs(end) for end in result if math.isfinite(end)))
             computed = values[node][np.isfinite(values[node])]  # no root of less than 0
             assert (low - 1e-13 * reach <= computed).all()
             assert (computed <= high + 1e-13 * reach).all()

@@ -38,8 +38,8 @@ def exact(book):
     def make(formula, x=0.75):
         model = book(CELLS | {"Z1": formula}, {"x": {"cell": "A1", "low": 0, "high": 9}}, {"f": "Z1", "x": "A1"})
         node = model.lowering.cell(model.forecasts[0].cell)
-        found = Exact(model.lowering.dag, closure(model.lowering.dag, [node]))
-        return found.trial({"x": x})[node], not found.unchecked
+        result = Exact(model.lowering.dag, closure(model.lowering.dag, [node]))
+        return result.trial({"x": x})[node], not result.unchecked
 
     return make
 
@@ -100,10 +100,10 @@ def exact(book):
     ],
 )
 def test_values(exact, formula, value):
-    found, checked = exact(formula)
+    result, checked = exact(formula)
     assert checked
     with mpmath.workdps(50):
-        assert abs(mpf(found) - value(mpf("0.75"))) < mpf(10) ** -38
+        assert abs(mpf(result) - value(mpf("0.75"))) < mpf(10) ** -38
 
 
 @pytest.mark.parametrize(
@@ -161,9 +161,9 @@ def test_errors(exact, formula, code):
     ],
 )
 def test_what_is_not_known_here_is_computed_as_in_the_run_and_told_of(exact, formula, value):
-    found, checked = exact(formula)
+    result, checked = exact(formula)
     assert not checked
-    assert (found if isinstance(value, ErrorCode) else float(found)) == pytest.approx(value, rel=1e-15)
+    assert (result if isinstance(value, ErrorCode) else float(result)) == pytest.approx(value, rel=1e-15)
 
 
 @pytest.mark.parametrize(

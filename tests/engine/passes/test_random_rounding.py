@@ -55,8 +55,8 @@ def test_whole_numbers_and_texts_stay():
 def test_without_rounding_at_random_it_is_the_run(needed):
     dag, nodes, node = needed("=SIN(A1)*EXP(-A1)+LN(A1)/3")
     x = np.linspace(0.1, 5, 50)
-    found = numbers_of(evaluate(dag, nodes, {"x": x})[node], 50)
-    assert found == pytest.approx(np.sin(x) * np.exp(-x) + np.log(x) / 3, rel=1e-13)
+    result = numbers_of(evaluate(dag, nodes, {"x": x})[node], 50)
+    assert result == pytest.approx(np.sin(x) * np.exp(-x) + np.log(x) / 3, rel=1e-13)
 
 
 @pytest.mark.parametrize(
@@ -92,8 +92,8 @@ def test_inputs_move_alike_wherever_they_are_used(needed):
     """A difference of an input with itself stays 0; one of its rounding with itself does not."""
     dag, nodes, node = needed("=A1*3.7-A1*3.7+B1*A1-A1*B1", B1=0.3)
     x = np.full(100, 1.1)
-    found = numbers_of(evaluate(dag, nodes, {"x": x}, of_inputs=RandomRounding(1, 2.0**-20))[node], 100)
-    assert np.abs(found).max() == 0.0
+    result = numbers_of(evaluate(dag, nodes, {"x": x}, of_inputs=RandomRounding(1, 2.0**-20))[node], 100)
+    assert np.abs(result).max() == 0.0
 
 
 def test_the_size_of_terms(needed):
@@ -104,10 +104,10 @@ def test_the_size_of_terms(needed):
 def test_values_that_nothing_reads_any_more_are_dropped(needed):
     dag, nodes, node = needed("=SIN(A1)*EXP(-A1)+LN(A1)/3")
     x = np.linspace(0.1, 5, 50)
-    found = evaluate(dag, nodes, {"x": x}, RandomRounding(3), keep=[node])
-    assert [*found] == [node]
+    result = evaluate(dag, nodes, {"x": x}, RandomRounding(3), keep=[node])
+    assert [*result] == [node]
     assert (
-        numbers_of(found[node], 50).tobytes()
+        numbers_of(result[node], 50).tobytes()
         == numbers_of(evaluate(dag, nodes, {"x": x}, RandomRounding(3))[node], 50).tobytes()
     )
 
@@ -129,10 +129,10 @@ def test_what_depends_on_another_value_changes_and_nothing_else(needed, changed,
         "sum": next(n for n in nodes if isinstance(dag.nodes[n], Apply) and values[n].numbers[0] == 3.0),
     }
     given_values = {places[name]: Value.of_numbers(np.array([value])) for name, value in changed.items()}
-    found = evaluate_changes(dag, nodes, values, given_values)
-    assert found[node].numbers[0] == pytest.approx(expected)
-    assert len(found) == count
-    assert all(found[n] is each for n, each in given_values.items())
+    result = evaluate_changes(dag, nodes, values, given_values)
+    assert result[node].numbers[0] == pytest.approx(expected)
+    assert len(result) == count
+    assert all(result[n] is each for n, each in given_values.items())
 
 
 def test_arrays_of_constants_are_moved_once_and_numbers_in_each_trial():
@@ -174,6 +174,6 @@ def test_constants_computed_from_large_arrays_count_as_typed(needed, most, close
 )
 def test_typed_numbers_are_measurements_unless_they_count_or_are_exponents(needed, formula, typed):
     dag, nodes, _ = needed(formula)
-    found = [dag.nodes[each] for each in _find_typed(dag, nodes)]
-    assert all(isinstance(node, Constant) for node in found)
-    assert sorted(float(node.value.numbers.flat[0]) for node in found) == sorted(typed)
+    result = [dag.nodes[each] for each in _find_typed(dag, nodes)]
+    assert all(isinstance(node, Constant) for node in result)
+    assert sorted(float(node.value.numbers.flat[0]) for node in result) == sorted(typed)

@@ -88,8 +88,8 @@ def test_a_faulty_cell_that_is_needed(graph_of):
     ],
 )
 def test_a_circle_is_told_cell_by_cell(graph_of, cells, circle):
-    found = set(graph_of(cells, ["A1"]).circles.values())
-    assert [(error.message.endswith(circle), error.where) for error in found] == [(True, circle.split(" → ")[0])]
+    result = set(graph_of(cells, ["A1"]).circles.values())
+    assert [(error.message.endswith(circle), error.where) for error in result] == [(True, circle.split(" → ")[0])]
 
 
 def test_a_circle_through_an_input_is_none(graph_of):
@@ -124,28 +124,28 @@ def cells(letters):
 
 
 def graph(**needs):
-    found = Needs()
-    found.parts = {cell: (tuple(cells(read)),) for cell, read in zip(cells(needs), needs.values(), strict=True)}
-    return found
+    result = Needs()
+    result.parts = {cell: (tuple(cells(read)),) for cell, read in zip(cells(needs), needs.values(), strict=True)}
+    return result
 
 
 def test_who_needs_itself_is_told_a_circle_it_is_in_with_the_others():
-    found = circular(graph(A="B", B="CD", C="A", D="", E="E", F="A"))
-    assert list(found) == cells("ABCE")
-    assert "S!A1 → S!B1 → S!C1 → S!A1" in found[cells("B")[0]].message
-    assert "S!E1 → S!E1" in found[cells("E")[0]].message
+    result = circular(graph(A="B", B="CD", C="A", D="", E="E", F="A"))
+    assert list(result) == cells("ABCE")
+    assert "S!A1 → S!B1 → S!C1 → S!A1" in result[cells("B")[0]].message
+    assert "S!E1 → S!E1" in result[cells("E")[0]].message
 
 
 def test_two_circles_apart_are_told_apart():
-    found = circular(graph(A="B", B="A", C="D", D="CA"))
-    assert found[cells("A")[0]] is found[cells("B")[0]]
-    assert found[cells("C")[0]] is found[cells("D")[0]] is not found[cells("A")[0]]
+    result = circular(graph(A="B", B="A", C="D", D="CA"))
+    assert result[cells("A")[0]] is result[cells("B")[0]]
+    assert result[cells("C")[0]] is result[cells("D")[0]] is not result[cells("A")[0]]
 
 
 def test_the_circle_may_begin_after_the_first_cell_of_its_group():
-    found = circular(graph(A="B", B="C", C="BA"))
-    assert list(found) == cells("ABC")
-    assert "circle: S!B1 → S!C1 → S!B1" in found[cells("A")[0]].message
+    result = circular(graph(A="B", B="C", C="BA"))
+    assert list(result) == cells("ABC")
+    assert "circle: S!B1 → S!C1 → S!B1" in result[cells("A")[0]].message
 
 
 def test_without_circles_there_is_nothing():

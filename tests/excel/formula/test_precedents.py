@@ -56,17 +56,17 @@ def said(areas):
     ],
 )
 def test_areas_that_a_text_mentions(book, text, areas):
-    found = [Area(a.sheet, a.top, a.left, a.bottom, a.right) for a in mentioned(Formula(text, 5, 3), HOST, book)]
+    result = [Area(a.sheet, a.top, a.left, a.bottom, a.right) for a in mentioned(Formula(text, 5, 3), HOST, book)]
     wanted = [parse_address(each.replace("My sheet", "'My sheet'").replace("Ann's", "'Ann''s'")) for each in areas]
-    assert found == [
+    assert result == [
         Area(each.sheet, each.row, each.column, each.row, each.column) if isinstance(each, Cell) else each
         for each in wanted
     ]
 
 
 def test_a_name_of_the_sheet_goes_before_the_others_and_both_count(book):
-    found = said(mentioned(Formula("Rate", 1, 1), Cell("Other", 1, 1), book))
-    assert found == ["Other!D4:D4", "S!C3:C3"]
+    result = said(mentioned(Formula("Rate", 1, 1), Cell("Other", 1, 1), book))
+    assert result == ["Other!D4:D4", "S!C3:C3"]
 
 
 @pytest.mark.parametrize(
@@ -80,8 +80,8 @@ def test_a_name_of_the_sheet_goes_before_the_others_and_both_count(book):
     ],
 )
 def test_a_shared_formula_is_moved_to_its_cell(book, text, host, area):
-    (found,) = mentioned(Formula(text, 5, 3), host, book)
-    assert (found.top, found.left, found.bottom, found.right) == (area.row, area.column, area.row, area.column)
+    (result,) = mentioned(Formula(text, 5, 3), host, book)
+    assert (result.top, result.left, result.bottom, result.right) == (area.row, area.column, area.row, area.column)
 
 
 def test_of_large_areas_only_the_cells_that_are_asked_for(workbook):

@@ -160,6 +160,6 @@ def test_formulatext_and_verify_show_it(workbook, formula, text):
     from xlmc.analysis.studies.verify import verify
 
     book = workbook({"A3": 5.0, "B3": CellContent(1.0, formula), "C1": ("=FORMULATEXT(B3)", text)})
-    found = {str(check.cell): check for check in verify(book).cells}
-    assert found["S!C1"].got == text
-    assert found["S!B3"].formula == text
+    result = {str(check.cell): check for check in verify(book).cells}
+    assert result["S!C1"].got == text
+    assert result["S!B3"].formula == text

@@ -21,8 +21,8 @@ from xlmc.excel.formula.graph import Spills
 )
 def test_which_array_formula_fills_a_cell(workbook, array, cell, anchor):
     cells = {"B1": array("=A1:A3*{1,2}", "S!B1:C3"), "B2": 4.0, "F1": array("=SUM(A1:A3)", "S!F1"), "Data!B2": 1.0}
-    found = Spills(workbook(cells)).anchor(parse_address(cell))
-    assert found == (parse_address(anchor) if anchor else None)
+    result = Spills(workbook(cells)).anchor(parse_address(cell))
+    assert result == (parse_address(anchor) if anchor else None)
 
 
 def test_an_array_as_large_as_the_sheet(workbook, array):

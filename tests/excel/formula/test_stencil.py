@@ -20,8 +20,8 @@ def stencil(workbook):
         resolver = Resolver(workbook({"Z9": 1.0, "Data!Z9": 1.0}, names={"Rate": "S!$Z$9"}))
         formula = Formula(text, at.row, at.column)
         resolver.tree_or_stencil(at, formula)
-        found = resolver.tree_or_stencil(at, formula)
-        return found if isinstance(found, Stencil) else None
+        result = resolver.tree_or_stencil(at, formula)
+        return result if isinstance(result, Stencil) else None
 
     return make
 
@@ -32,22 +32,22 @@ MOVES = ["A1+$B$2", "SUM(D4:F6)", "IF(E4>0,Data!E4,$A5)", "-E$4%", 'D5&"a"', "SU
 @pytest.mark.parametrize("text", MOVES)
 @pytest.mark.parametrize("host", [HOME, Cell("S", 9, 5), Cell("S", 5, 9), Cell("S", 7, 6)])
 def test_it_is_the_tree_of_each_cell(stencil, workbook, text, host):
-    found = stencil(text)
+    result = stencil(text)
     alone = Resolver(workbook({"Z9": 1.0, "Data!Z9": 1.0})).formula(host, Formula(text, HOME.row, HOME.column))
-    assert found.fits(host)
-    assert found.at(host) == alone
+    assert result.fits(host)
+    assert result.at(host) == alone
 
 
 @given(
     st.sampled_from(["D4*F6", "SUM(D4:F6)+$A$1", "E$1-$A5+D4", "IF(D4,D4,C3)"]), st.integers(-3, 9), st.integers(-3, 9)
 )
 def test_its_cells_are_what_the_tree_refers_to(stencil, text, down, right):
-    found, host = stencil(text), Cell("S", 5 + down, 5 + right)
-    if not found.fits(host):
+    result, host = stencil(text), Cell("S", 5 + down, 5 + right)
+    if not result.fits(host):
         return
-    read = (place for place in references(found.at(host)))
+    read = (place for place in references(result.at(host)))
     cells = [cell for place in read for cell in (place.cells() if isinstance(place, Area) else (place,))]
-    assert list(dict.fromkeys(found.cells(host))) == list(dict.fromkeys(cells))
+    assert list(dict.fromkeys(result.cells(host))) == list(dict.fromkeys(cells))
 
 
 @pytest.mark.parametrize(

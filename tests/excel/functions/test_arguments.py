@@ -53,9 +53,9 @@ def test_the_earliest_and_the_first_error():
 
 
 def test_errors_over_a_value():
-    found = with_errors(constant(5), np.array([0, NA], np.uint8))
-    assert found.objects().tolist() == [5, NA]
-    assert found.numbers.tolist() == [5, 0]
+    result = with_errors(constant(5), np.array([0, NA], np.uint8))
+    assert result.objects().tolist() == [5, NA]
+    assert result.numbers.tolist() == [5, 0]
     assert with_errors(constant(5), np.zeros((2, 1, 1), np.uint8)).shape == (2, 1, 1)
 
 

@@ -168,9 +168,9 @@ def test_as_the_model_has_it_in_every_trial(trials, constant_range):
     box = np.empty((1 if constant_range else len(trials), 1, 3), object)
     for place, row in enumerate(rows[: len(box)]):
         box[place, 0] = row
-    found = np.broadcast_to(which_meet(from_objects(wanted), from_objects(box)), (len(trials), 3))
+    result = np.broadcast_to(which_meet(from_objects(wanted), from_objects(box)), (len(trials), 3))
     expected = [[_meets(cell, trial[0]) for cell in row] for trial, row in zip(trials, rows, strict=True)]
-    assert found.tolist() == expected
+    assert result.tolist() == expected
 
 
 TABLE_OF_PATTERNS = [

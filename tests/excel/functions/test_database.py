@@ -92,8 +92,8 @@ def test_database_and_criteria_of_their_own_in_each_trial(value):
     criteria[:, 1, 0] = [">1", "<>2", "<20"]
     database = Value(numbers, kinds, texts)
     wanted = Value(np.zeros((1, 1, 1)), np.full((1, 1, 1), 2, np.uint8), criteria)
-    found = function_named("DSUM")([database, constant("Profit"), Value(np.zeros((3, 2, 1)), wanted.kinds, criteria)])
-    assert found.objects().tolist() == [6, 5, 24]
+    result = function_named("DSUM")([database, constant("Profit"), Value(np.zeros((3, 2, 1)), wanted.kinds, criteria)])
+    assert result.objects().tolist() == [6, 5, 24]
 
 
 cells = st.sampled_from([0.0, 1.0, 2.0, "a", "ab", "2", True, None, DIV0])

@@ -50,8 +50,8 @@ def test_a_cell_a_text_and_a_result_are_0(number):
 def test_no_function_gives_a_smaller_one(name, x, y):
     row = row_of(name)
     numbers = [x, y] if row.arity()[1] > 1 else [abs(x) * -1e142]
-    found = row([constant(number) for number in numbers]).numbers[0]
-    assert found == 0 or abs(found) >= TINIEST
+    result = row([constant(number) for number in numbers]).numbers[0]
+    assert result == 0 or abs(result) >= TINIEST
 
 
 def test_a_product_is_0_from_there_on():

@@ -148,8 +148,8 @@ def _owned(node: ast.AST, owner: str | None) -> Iterator[tuple[str, list[str]]]:
                 own = ast.unparse(target)
             case _:
                 own = owner
-        if (found := _strings(child)) and own is not None and own != "__all__":
-            yield own, found
+        if (result := _strings(child)) and own is not None and own != "__all__":
+            yield own, result
         yield from _owned(child, own)
 
 
@@ -158,11 +158,11 @@ def _lists(source: str) -> dict[str, list[list[str]]]:
     named = {(name, end) for name, end in _QUOTED.findall(source) if name in NAMES}
     if len({name for name, _ in named}) < 2 and all(end != " " for _, end in named):
         return {}  # which spares parsing most files
-    found = defaultdict(list)
+    result = defaultdict(list)
     for owner, names in _owned(ast.parse(source), None):
         if len(NAMES.intersection(names)) > 1:
-            found[owner].append(names)
-    return found
+            result[owner].append(names)
+    return result
 
 
 @pytest.fixture(scope="module")
@@ -255,9 +255,9 @@ def test_what_lies_between_two_numbers_does():
     for row in ROWS.values():
         if row.facts.result_range is not None:
             low, high = row.facts.result_range
-            found = [row([constant(x)]).numbers[0] for x in (-1e5, -2.0, 0.0, 0.5, 1.5, 4.7, 700.0)]
-            assert low <= min(found)
-            assert max(found) <= high
+            result = [row([constant(x)]).numbers[0] for x in (-1e5, -2.0, 0.0, 0.5, 1.5, 4.7, 700.0)]
+            assert low <= min(result)
+            assert max(result) <= high
 
 
 def test_a_function_with_a_domain_is_an_error_beyond_it_and_a_number_within():

@@ -138,8 +138,8 @@ def test_the_ends_are_the_last_doubles_that_are_equal(number):
 def test_ranges_are_compared_cell_by_cell():
     cells = np.array([0.1, 0.2, 0.3]).reshape(1, 3, 1)
     trials = np.array([3.0, 2.0]).reshape(2, 1, 1)
-    found = COMPARISONS["="](cells * 3, np.broadcast_to(cells * trials, (2, 3, 1)))
-    assert found[..., 0].tolist() == [[True] * 3, [False] * 3]
+    result = COMPARISONS["="](cells * 3, np.broadcast_to(cells * trials, (2, 3, 1)))
+    assert result[..., 0].tolist() == [[True] * 3, [False] * 3]
     assert COMPARISONS["="](cells * trials, 0.3)[..., 0].tolist() == [[True, False, False], [False] * 3]
 
 
@@ -228,8 +228,8 @@ def test_numbers_that_are_near_each_other_in_some_trials_only():
 def test_infinite_numbers_that_vary_are_compared_as_they_are():
     x, y = np.array([math.inf, -math.inf, 1.0, math.nan]), np.array([math.inf, math.inf, -math.inf, 1.0])
     with np.errstate(all="ignore"):
-        found = {symbol: COMPARISONS[symbol](x, y).tolist() for symbol in RELATIONS}
-        assert found == {symbol: relation(x, y).tolist() for symbol, relation in RELATIONS.items()}
+        result = {symbol: COMPARISONS[symbol](x, y).tolist() for symbol in RELATIONS}
+        assert result == {symbol: relation(x, y).tolist() for symbol, relation in RELATIONS.items()}
 
 
 @pytest.mark.parametrize(

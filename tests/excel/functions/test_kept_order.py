@@ -69,11 +69,11 @@ def test_a_table_is_put_in_order_once(monkeypatch):
 def test_many_new_keys_stand_between_the_texts_of_a_table():
     table = _column([f"item {i:03d}" for i in range(0, 200, 2)])
     keys = _value([f"item {i:03d}" for i in range(1, 200, 2)])
-    wanted, found = to_ordered(keys, table)
+    wanted, result = to_ordered(keys, table)
     assert wanted.order[:, 0].tolist() == [place + 0.5 for place in range(100)]
-    assert found.order[0].tolist() == list(range(100))
+    assert result.order[0].tolist() == list(range(100))
     assert [wanted.text(place) for place in wanted.order[:, 0]] == keys.texts.tolist()
-    assert to_ordered(_value(["another"]), table)[1] is found
+    assert to_ordered(_value(["another"]), table)[1] is result
 
 
 def test_columns_and_turned_tables_are_shared_and_let_go():

@@ -119,5 +119,5 @@ def test_ranges_of_conditions(evaluate):
 def test_a_condition_of_trials_over_ranges():
     condition = _of(True, False, REF)
     yes = from_objects(np.array([[[1.0, 2.0, 3.0]]], object))
-    found = function_named("IF")([condition, yes, _of("no")]).objects()[:, 0].tolist()
-    assert found == [[1.0, 2.0, 3.0], ["no"] * 3, [REF] * 3]
+    result = function_named("IF")([condition, yes, _of("no")]).objects()[:, 0].tolist()
+    assert result == [[1.0, 2.0, 3.0], ["no"] * 3, [REF] * 3]

@@ -190,8 +190,8 @@ def test_a_whole_column_is_refused_by_name(door, tmp_path, formula):
 
 def test_what_nobody_said_of_it_is_taken_with_care(path):
     model = load(path)
-    found = derivatives(model, {"x": np.array([1.25, 1.75])})
-    reported = {one.function for one in found.numerical}
+    result = derivatives(model, {"x": np.array([1.25, 1.75])})
+    reported = {one.function for one in result.numerical}
     assert reported == {"MADEUP.CURVE", "MADEUP.PARTS", "MADEUP.SIZE"}
 
 

@@ -20,8 +20,8 @@ def test_texts_of_all_values_share_one_order():
 
 
 def test_what_stands_under_an_error_does_not_count():
-    (found,) = to_ordered(Value(np.array([5.0, 6.0]), np.array([0, 17], np.uint8)))
-    assert found.order.tolist() == [[5], [0]]
+    (result,) = to_ordered(Value(np.array([5.0, 6.0]), np.array([0, 17], np.uint8)))
+    assert result.order.tolist() == [[5], [0]]
 
 
 def test_keys_of_any_shape_are_sought_in_vectors_of_any_trials():

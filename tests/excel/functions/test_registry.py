@@ -77,17 +77,17 @@ def _bits(item: object) -> object:
     return struct.pack("d", item) if isinstance(item, float) else item
 
 
-def _same_bits(found: Value, expected: Value) -> bool:
+def _same_bits(value: Value, expected: Value) -> bool:
     """For results of many cells, of which objects would take long."""
-    parts = [[np.broadcast_to(part, v.shape) for part in (v.numbers, v.kinds)] for v in (found, expected)]
-    texts = [[] if v.texts is None else np.broadcast_to(v.texts, v.shape).tolist() for v in (found, expected)]
+    parts = [[np.broadcast_to(part, v.shape) for part in (v.numbers, v.kinds)] for v in (value, expected)]
+    texts = [[] if v.texts is None else np.broadcast_to(v.texts, v.shape).tolist() for v in (value, expected)]
     return all(a.tobytes() == b.tobytes() for a, b in zip(*parts, strict=True)) and texts[0] == texts[1]
 
 
-def _same(name: str, found: object, expected: object) -> bool:
-    if name in SQUARED and isinstance(found, float) and isinstance(expected, float):
-        return abs(found - expected) <= np.spacing(abs(expected))
-    return type(found) is type(expected) and _bits(found) == _bits(expected)
+def _same(name: str, value: object, expected: object) -> bool:
+    if name in SQUARED and isinstance(value, float) and isinstance(expected, float):
+        return abs(value - expected) <= np.spacing(abs(expected))
+    return type(value) is type(expected) and _bits(value) == _bits(expected)
 
 
 def first_difference(function: Function, random: Random) -> str | None:
@@ -100,15 +100,15 @@ def first_difference(function: Function, random: Random) -> str | None:
         return None
     for i in range(n):
         alone = function([argument.take(np.array([i])) for argument in arguments])
-        found = together.take(np.array([i]))
-        same = found.shape == alone.shape
-        if same and found.numbers.size > MANY:
-            same = _same_bits(found, alone)
+        result = together.take(np.array([i]))
+        same = result.shape == alone.shape
+        if same and result.numbers.size > MANY:
+            same = _same_bits(result, alone)
         elif same:
-            pairs = zip(*(np.ravel(value.objects()).tolist() for value in (found, alone)), strict=True)
+            pairs = zip(*(np.ravel(value.objects()).tolist() for value in (result, alone)), strict=True)
             same = all(_same(function.name, *pair) for pair in pairs)
         if not same:
-            return f"{function.name}, trial {i}: {found} together, {alone} alone: {arguments}"
+            return f"{function.name}, trial {i}: {result} together, {alone} alone: {arguments}"
     return None
 
 
@@ -117,8 +117,8 @@ def first_difference(function: Function, random: Random) -> str | None:
 def test_trials_together_are_the_trials_alone(seed):
     """One test of all functions: what hypothesis does for a test takes longer than a function."""
     fixed = [function for function in ROWS.values() if not function.volatile]
-    found = [first_difference(function, Random(f"{function.name} {seed}")) for function in fixed]
-    assert [difference for difference in found if difference] == []
+    result = [first_difference(function, Random(f"{function.name} {seed}")) for function in fixed]
+    assert [difference for difference in result if difference] == []
 
 
 def _as_body_takes_them(function: Function, columns: list[np.ndarray]) -> list[np.ndarray]:
@@ -143,7 +143,7 @@ def test_the_ufunc_is_the_function_where_no_flag_is_raised_and_the_guard_holds(n
         return
     try:
         with np.errstate(divide="raise", over="raise", invalid="raise"):
-            found = (
+            result = (
                 reduce(partial(_flushing, function.ufunc), arrays) if function.takes_sets else function.ufunc(*arrays)
             )
     except FloatingPointError:
@@ -151,7 +151,7 @@ def test_the_ufunc_is_the_function_where_no_flag_is_raised_and_the_guard_holds(n
     expected = function([Value.of_numbers(x) for x in columns])
     assert not expected.has_errors
     zero = 0.0  # the sign of a zero is no value of Excel's, and MIN and MAX may take either
-    assert np.array_equal(tiny_to_zero(np.float64(found)) + zero, expected.numbers + zero)
+    assert np.array_equal(tiny_to_zero(np.float64(result)) + zero, expected.numbers + zero)
 
 
 def _takes_numbers(function: Function) -> bool:
@@ -189,8 +189,8 @@ def constants_differ(function: Function, random: Random) -> bool:
     arrays = _as_body_takes_them(function, [np.full(2, number) for number in numbers])
     mixed = [array if i == varying else array[0].item() for i, array in enumerate(arrays)]
     with np.errstate(all="ignore"):
-        found, expected = (np.asarray(function.body(*each)) for each in (mixed, arrays))
-    return not np.array_equal(np.broadcast_to(found, expected.shape), expected, equal_nan=True)
+        result, expected = (np.asarray(function.body(*each)) for each in (mixed, arrays))
+    return not np.array_equal(np.broadcast_to(result, expected.shape), expected, equal_nan=True)
 
 
 @given(seed=seeds)
@@ -266,11 +266,11 @@ def test_where_nothing_is_imported_yet_it_is_found():
 
 def test_one_made_for_a_workbook_goes_whole():
     made = with_settings(function_named("YEAR"), date1904=True, macintosh=False)
-    found = pickle.loads(pickle.dumps(made))
-    assert found is not made
-    assert found([from_objects(np.array([0.5], object))]).numbers.tolist() == [1904.0]
-    assert found.parameters == made.parameters
-    assert all(parameter.required for parameter in found.parameters)
+    result = pickle.loads(pickle.dumps(made))
+    assert result is not made
+    assert result([from_objects(np.array([0.5], object))]).numbers.tolist() == [1904.0]
+    assert result.parameters == made.parameters
+    assert all(parameter.required for parameter in result.parameters)
 
 
 def test_a_body_is_not_called_where_every_trial_has_an_error_in_its_arguments():
@@ -279,7 +279,7 @@ def test_a_body_is_not_called_where_every_trial_has_an_error_in_its_arguments():
 
     row = Function("TEST", (Text, Text), body, Kind.TEXT)
     codes = np.array([ErrorCode.DIV0, ErrorCode.NA], np.uint8)
-    found = row([Value.of_errors(codes), constant("x")])
-    assert found.objects().tolist() == [ErrorCode.DIV0, ErrorCode.NA]
+    result = row([Value.of_errors(codes), constant("x")])
+    assert result.objects().tolist() == [ErrorCode.DIV0, ErrorCode.NA]
     over_cells = row([Value.of_errors(codes[:1]), constant("x").as_range().take(np.zeros(1, np.intp))])
     assert over_cells.objects().tolist() == [[[ErrorCode.DIV0]]]

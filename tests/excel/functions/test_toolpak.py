@@ -48,8 +48,8 @@ def test_a_logical_is_no_number(check, name):
 )
 def test_the_number_of_an_object_is_that_of_a_value(item, number):
     assert strict_number(item) == number
-    found = numbers_only(lambda x: x)(constant(item)).objects()[0]
-    assert (type(found), found) == (type(number), number)
+    result = numbers_only(lambda x: x)(constant(item)).objects()[0]
+    assert (type(result), result) == (type(number), number)
 
 
 def test_the_first_error_among_the_arguments_wins():

@@ -84,8 +84,8 @@ def test_objects_come_back(items, shape):
     array = np.empty(len(items), object)
     array[:] = items
     value = from_objects(array.reshape(shape))
-    found = value.objects().ravel().tolist()
-    assert [(type(item), item) for item in found] == [(type(item), item) for item in items]
+    result = value.objects().ravel().tolist()
+    assert [(type(item), item) for item in result] == [(type(item), item) for item in items]
 
 
 @pytest.mark.parametrize(
@@ -214,5 +214,5 @@ def test_a_scalar_as_a_range_has_one_cell():
 
 def test_a_constant_too_small_for_excel_is_zero_and_others_keep_their_bits():
     numbers = [5e-324, -1e-310, 2.0**-1022, -(2.0**-1022), -0.0, 1e308]
-    found = [constant(number).numbers.item() for number in numbers]
-    assert [number.hex() for number in found] == [number.hex() for number in (0.0, 0.0, *numbers[2:])]
+    result = [constant(number).numbers.item() for number in numbers]
+    assert [number.hex() for number in result] == [number.hex() for number in (0.0, 0.0, *numbers[2:])]

@@ -32,9 +32,9 @@ VALUES = [
 
 @pytest.mark.parametrize(("kind", "raw", "value"), VALUES)
 def test_value(kind, raw, value):
-    found = convert(kind, raw, CONTEXT)
-    assert found == value
-    assert type(found) is type(value)
+    result = convert(kind, raw, CONTEXT)
+    assert result == value
+    assert type(result) is type(value)
 
 
 @pytest.mark.parametrize(

@@ -86,12 +86,12 @@ def loaded(path):
     reader.read_manifest()
     reader.read_strings()
     reader.read_workbook()
-    found = {}
+    result = {}
     for sheet, rel in reader.parser.find_sheets():
         if rel.target in reader.valid_files and "chartsheet" not in rel.Type:
             with reader.archive.open(rel.target) as file:
-                found[sheet.name] = parsed(file, reader.shared_strings, reader.wb.epoch)
-    return reader.wb.epoch, found
+                result[sheet.name] = parsed(file, reader.shared_strings, reader.wb.epoch)
+    return reader.wb.epoch, result
 
 
 def parsed(file, strings, epoch):
@@ -126,12 +126,12 @@ def test_formulas_and_values_as_openpyxl_reads_them(path, monkeypatch):
     assert list(book.sheets) == list(sheets)
     for title, (formulas, values) in sheets.items():
         cells = book.sheets[title].cells
-        found = {place: text for place, content in cells.items() if (text := written(content, place))}
+        result = {place: text for place, content in cells.items() if (text := written(content, place))}
         theirs = {place: text for place, cell in filled(formulas).items() if (text := formula_of(cell))}
-        assert found == theirs
+        assert result == theirs
         # An empty text is now blank, now a text to openpyxl.
-        found = {place: (type(c.value), c.value) for place, c in cells.items() if c.value not in (None, "")}
-        assert found == {place: value_of(cell, epoch) for place, cell in filled(values).items()}
+        result = {place: (type(c.value), c.value) for place, c in cells.items() if c.value not in (None, "")}
+        assert result == {place: value_of(cell, epoch) for place, cell in filled(values).items()}
 
 
 @pytest.mark.parametrize("name", sorted(UNREADABLE_BY_OPENPYXL))

@@ -49,5 +49,5 @@ def test_a_cell_is_called_by_the_texts_around_it(cells, cell, name, unit, tmp_pa
         book.active[place] = value
     book.active.title = "S"
     book.save(tmp_path / "book.xlsx")
-    found = label_of(read_workbook(tmp_path / "book.xlsx"), parse_address(cell, "S"))
-    assert (found.name, found.unit) == (name, unit)
+    result = label_of(read_workbook(tmp_path / "book.xlsx"), parse_address(cell, "S"))
+    assert (result.name, result.unit) == (name, unit)

@@ -25,38 +25,38 @@ def test_a_sheet_is_parsed_once(book):
 
 
 def test_a_broken_sheet_complains_when_asked_for_and_not_before(book):
-    found = book({"Good": NUMBER, "Broken": BROKEN})
-    assert "Broken" in found.sheets
-    assert found.content(Cell("Good", 1, 1)).value == 5.0
+    result = book({"Good": NUMBER, "Broken": BROKEN})
+    assert "Broken" in result.sheets
+    assert result.content(Cell("Good", 1, 1)).value == 5.0
     with pytest.raises(WorkbookError, match=r"sheet2\.xml is not well-formed XML") as caught:
-        found.content(Cell("Broken", 1, 1))
+        result.content(Cell("Broken", 1, 1))
     assert caught.value.where == "book.xlsx"
 
 
 def test_a_cell_that_complains_keeps_its_place(book):
-    found = book({"One": NUMBER.replace("5", "five")})
+    result = book({"One": NUMBER.replace("5", "five")})
     with pytest.raises(WorkbookError, match="holds 'five'") as caught:
-        found.sheet_named("one")
+        result.sheet_named("one")
     assert caught.value.where == "One!A1"
 
 
 def test_unknown_sheets(book):
-    found = book({"One": NUMBER})
-    assert "Two" not in found.sheets
-    assert found.sheets.get("Two") is None
-    assert found.sheet_named("Two") is None
-    assert found.content(Cell("Two", 1, 1)).value is None
+    result = book({"One": NUMBER})
+    assert "Two" not in result.sheets
+    assert result.sheets.get("Two") is None
+    assert result.sheet_named("Two") is None
+    assert result.content(Cell("Two", 1, 1)).value is None
 
 
 def test_shared_strings_are_read_when_a_sheet_is(book):
-    found = book({"One": NUMBER}, strings=["<t>a"])
+    result = book({"One": NUMBER}, strings=["<t>a"])
     with pytest.raises(WorkbookError, match=r"sharedStrings\.xml is not well-formed"):
-        found.sheets["One"]
+        result.sheets["One"]
 
 
 def test_it_can_go_to_another_process(book):
-    found = pickle.loads(pickle.dumps(book({"One": NUMBER}).sheets))
-    assert found["One"].cells[1, 1].value == 5.0
+    result = pickle.loads(pickle.dumps(book({"One": NUMBER}).sheets))
+    assert result["One"].cells[1, 1].value == 5.0
 
 
 def test_sheets_that_mention_a_word_are_found_without_parsing(book):
@@ -113,8 +113,8 @@ def test_sheets_that_hold_texts_are_found_without_parsing(book):
         "Inline": "<sheetData><row><c t='inlineStr'><is><t>key</t></is></c><c t='str'><v>other key</v></c></row>",
         "Broken": BROKEN,
     }
-    found = book(sheets, strings=["<t>other key</t>", "<t>a</t>", "<t>key</t>"]).sheets
-    assert found.holding(["key", "other key"]) == ["Both", "Inline"]
+    result = book(sheets, strings=["<t>other key</t>", "<t>a</t>", "<t>key</t>"]).sheets
+    assert result.holding(["key", "other key"]) == ["Both", "Inline"]
 
 
 def test_other_parts_of_the_same_structure(book):

@@ -102,12 +102,12 @@ def test_what_is_not_stored_is_refused_by_cell(linked, formula):
 
 
 def test_a_link_whose_part_is_not_there_holds_nothing(book):
-    found = book(
+    result = book(
         {"S": f"<sheetData>{row_of('[1]Prices!A1')}</sheetData>"},
         in_workbook='<externalReferences><externalReference r:id="link"/></externalReferences>',
         rels=[("link", "externalLink", "externalLinks/externalLink1.xml")],
     )
-    (check,) = verify(found).cells
+    (check,) = verify(result).cells
     assert check.status is Status.UNSUPPORTED
     assert "of which no values are stored" in check.reason
 
@@ -142,11 +142,11 @@ def test_a_damaged_link_is_told_of_when_it_is_read(linked, stored, message):
 
 
 def test_cells_that_a_link_does_not_hold_are_blank(linked):
-    found = linked(row_of("1"))
-    assert found.content(Cell("[1]Prices", 2, 2)) == CellContent(142.0)
-    assert found.content(Cell("[1]Prices", 9, 9)) == CellContent()
-    assert found.content(Cell("[7]Prices", 2, 2)) == CellContent()
-    assert found.sheet_of(Cell("[x", 1, 1)) is None
+    result = linked(row_of("1"))
+    assert result.content(Cell("[1]Prices", 2, 2)) == CellContent(142.0)
+    assert result.content(Cell("[1]Prices", 9, 9)) == CellContent()
+    assert result.content(Cell("[7]Prices", 2, 2)) == CellContent()
+    assert result.sheet_of(Cell("[x", 1, 1)) is None
 
 
 BROKEN = """<sheetNames><sheetName val="Prices"/><sheetName val="Whole"/></sheetNames>
@@ -168,9 +168,9 @@ BROKEN = """<sheetNames><sheetName val="Prices"/><sheetName val="Whole"/></sheet
     ],
 )
 def test_a_sheet_that_excel_could_not_read_again_is_an_error(linked, formula, expected):
-    found = linked(row_of(formula), BROKEN)
-    assert any("Links to prices.xlsx are broken" in str(notice) for notice in found.notices)
-    (compared,) = verify(found).cells
+    result = linked(row_of(formula), BROKEN)
+    assert any("Links to prices.xlsx are broken" in str(notice) for notice in result.notices)
+    (compared,) = verify(result).cells
     assert compared.got == expected
 
 

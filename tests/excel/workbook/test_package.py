@@ -142,16 +142,16 @@ STORED = [
 @pytest.mark.parametrize(("target", "name"), TARGETS)
 def test_targets_are_names_of_parts(rels, target, name):
     parts = dict.fromkeys(STORED, b"") | {"xl/_rels/Workbook.xml.rels": rels(("a", "thing", target)).encode()}
-    found = relationships(parts, "xl/workbook.xml")["a"]
-    assert (found.target, found.kind, found.external) == (name, "thing", False)
+    result = relationships(parts, "xl/workbook.xml")["a"]
+    assert (result.target, result.kind, result.external) == (name, "thing", False)
 
 
 def test_external_targets_are_left_as_they_are(rels):
     parts = {
         "xl/_rels/a.xml.rels": rels(("l", "externalLinkPath", "file:///C:/Other%20book.xlsx", "External")).encode()
     }
-    found = relationships(parts, "xl/a.xml")["l"]
-    assert (found.target, found.external) == ("file:///C:/Other%20book.xlsx", True)
+    result = relationships(parts, "xl/a.xml")["l"]
+    assert (result.target, result.external) == ("file:///C:/Other%20book.xlsx", True)
 
 
 def test_a_part_without_rels_has_none():

@@ -70,9 +70,9 @@ def test_the_whole_of_a_workbook(written):
     ],
 )
 def test_its_cells(written, sheet, place, value, formula):
-    found = read_workbook(written).content(Cell(sheet, *place))
-    assert (found.value, found.formula) == (value, formula)
-    assert type(found.value) is type(value)
+    result = read_workbook(written).content(Cell(sheet, *place))
+    assert (result.value, result.formula) == (value, formula)
+    assert type(result.value) is type(value)
 
 
 def test_parts_and_fingerprints(written):
@@ -197,8 +197,8 @@ def messages(book):
     ],
 )
 def test_calculation(book, settings, message):
-    (found,) = messages(book(in_workbook=f"<calcPr {settings}/>"))
-    assert found.startswith(message)
+    (result,) = messages(book(in_workbook=f"<calcPr {settings}/>"))
+    assert result.startswith(message)
 
 
 def test_an_ordinary_workbook_gives_none(book):
@@ -218,8 +218,8 @@ def test_an_ordinary_workbook_gives_none(book):
     ],
 )
 def test_iterative_calculation(book, settings, expected):
-    found = book(in_workbook=f"<calcPr {settings}/>")
-    assert (found.iteration, messages(found)) == (expected, [])
+    result = book(in_workbook=f"<calcPr {settings}/>")
+    assert (result.iteration, messages(result)) == (expected, [])
 
 
 READS = "which xlmc does not open: where a formula reads them, it gets the value that Excel stored"
@@ -246,20 +246,20 @@ def test_external_links_without_a_file_or_a_date(book):
 
 def test_signatures(book, rels):
     pointers = rels(("w", "officeDocument", "xl/workbook.xml"), ("s", SIGNED, "_xmlsignatures/origin.sigs"))
-    (found,) = messages(book(more={"_rels/.rels": pointers, "_xmlsignatures/origin.sigs": b""}))
-    assert found.startswith("book.xlsx: The workbook is digitally signed")
+    (result,) = messages(book(more={"_rels/.rels": pointers, "_xmlsignatures/origin.sigs": b""}))
+    assert result.startswith("book.xlsx: The workbook is digitally signed")
 
 
 def test_names_of_no_sheet(book):
-    (found,) = messages(book(in_workbook="<definedNames><definedName name='x' localSheetId='7'/></definedNames>"))
-    assert found.startswith("book.xlsx: The defined name 'x' belongs to a sheet that does not exist")
+    (result,) = messages(book(in_workbook="<definedNames><definedName name='x' localSheetId='7'/></definedNames>"))
+    assert result.startswith("book.xlsx: The defined name 'x' belongs to a sheet that does not exist")
 
 
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
 def test_data_tables(book, book_parts, encoding):
     sheet = book_parts({"One": TABLE})["xl/worksheets/sheet1.xml"].decode()
-    found = book({"One": ""}, more={"xl/worksheets/sheet1.xml": sheet.encode(encoding)})
-    assert found.data_tables == (DataTable(Area("One", 4, 3, 5, 3), (Cell("One", 1, 2),)),)
+    result = book({"One": ""}, more={"xl/worksheets/sheet1.xml": sheet.encode(encoding)})
+    assert result.data_tables == (DataTable(Area("One", 4, 3, 5, 3), (Cell("One", 1, 2),)),)
 
 
 def test_every_reason_is_told(book):

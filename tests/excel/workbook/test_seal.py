@@ -65,8 +65,8 @@ def test_other_files_have_no_seal(tmp_path, content):
 
 @pytest.mark.parametrize("seal", [b"", b"[]", b"{}", b'{"book": "b"}', b'{"book": 1, "sha256": 2}', b"[" * 100_000])
 def test_a_seal_that_somebody_wrote_is_none(tmp_path, seal):
-    found = read_seal(written(tmp_path / "out.xlsx", PARTS | {"xl/xlmc/seal1.json": seal}))
-    assert found is None or not found.whole
+    result = read_seal(written(tmp_path / "out.xlsx", PARTS | {"xl/xlmc/seal1.json": seal}))
+    assert result is None or not result.whole
 
 
 def test_a_seal_of_the_users_own_stays(tmp_path):

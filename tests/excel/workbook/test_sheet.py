@@ -40,9 +40,9 @@ VALUES = {
 
 @pytest.mark.parametrize(("cell", "value"), VALUES.items())
 def test_values(cell, value):
-    found = cells(f'<row r="7">{cell}</row>')
-    assert found == {(7, 2): CellContent(value)}
-    assert type(found[7, 2].value) is type(value)
+    result = cells(f'<row r="7">{cell}</row>')
+    assert result == {(7, 2): CellContent(value)}
+    assert type(result[7, 2].value) is type(value)
 
 
 @pytest.mark.parametrize(
@@ -78,8 +78,8 @@ FORMULAS = {
 
 @pytest.mark.parametrize(("formula", "text"), FORMULAS.items())
 def test_plain_formulas(formula, text):
-    found = cells(f'<row r="2"><c r="C2">{formula}<v>3</v></c></row>')
-    assert found == {(2, 3): CellContent(3.0, Formula(text, 2, 3))}
+    result = cells(f'<row r="2"><c r="C2">{formula}<v>3</v></c></row>')
+    assert result == {(2, 3): CellContent(3.0, Formula(text, 2, 3))}
 
 
 def test_a_formula_without_cached_value():
@@ -87,35 +87,35 @@ def test_a_formula_without_cached_value():
 
 
 def test_children_of_a_shared_formula_carry_their_master():
-    found = cells(
+    result = cells(
         '<row r="1"><c r="B1"><f t="shared" ref="B1:B3" si="0">A1*2</f><v>2</v></c></row>'
         '<row r="2"><c r="B2"><f t="shared" si="0"/><v>4</v></c></row>'
         '<row r="3"><c r="B3"><f t="shared" si="0">IGNORED()</f><v>6</v></c></row>'
     )
-    assert {content.formula for content in found.values()} == {Formula("A1*2", 1, 2)}
-    assert [content.value for content in found.values()] == [2.0, 4.0, 6.0]
+    assert {content.formula for content in result.values()} == {Formula("A1*2", 1, 2)}
+    assert [content.value for content in result.values()] == [2.0, 4.0, 6.0]
 
 
 def test_shared_formulas_keep_apart_and_a_new_master_takes_over():
-    found = cells(
+    result = cells(
         '<row r="1"><c r="A1"><f t="shared" ref="A1:A2" si="0">X1</f></c>'
         '<c r="B1"><f t="shared" ref="B1:B2" si="1">Y1</f></c></row>'
         '<row r="2"><c r="A2"><f t="shared" si="0"/></c><c r="B2"><f t="shared" si="1"/></c></row>'
         '<row r="3"><c r="A3"><f t="shared" ref="A3:A4" si="0">Z3</f></c></row>'
         '<row r="4"><c r="A4"><f t="shared" si="0"/></c></row>'
     )
-    texts = {place: content.formula.text for place, content in found.items() if content.formula}
+    texts = {place: content.formula.text for place, content in result.items() if content.formula}
     assert texts == {(1, 1): "X1", (1, 2): "Y1", (2, 1): "X1", (2, 2): "Y1", (3, 1): "Z3", (4, 1): "Z3"}
 
 
 @pytest.mark.parametrize(("mark", "dynamic"), [("", False), ('cm="1"', True), ('cm="2"', False)])
 def test_array_formulas(mark, dynamic):
-    found = cells(
+    result = cells(
         f'<row r="1"><c r="A1" {mark}><f t="array" ref="A1:A2">B1:B2*2</f><v>2</v></c></row>'
         '<row r="2"><c r="A2"><v>4</v></c></row>'
     )
     array = Formula("B1:B2*2", 1, 1, array=Area("My sheet", 1, 1, 2, 1), dynamic=dynamic)
-    assert found == {(1, 1): CellContent(2.0, array), (2, 1): CellContent(4.0)}
+    assert result == {(1, 1): CellContent(2.0, array), (2, 1): CellContent(4.0)}
 
 
 def test_data_tables_are_values():

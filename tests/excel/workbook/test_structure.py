@@ -9,7 +9,7 @@ USUAL = Iteration(100, 0.001)
 
 
 @pytest.mark.parametrize(
-    ("settings", "found"),
+    ("settings", "result"),
     [
         ({}, None),
         ({"iterate": "0", "iterateCount": "5"}, None),
@@ -28,5 +28,5 @@ USUAL = Iteration(100, 0.001)
         ({"iterate": "1", "iterateDelta": "little"}, USUAL),
     ],
 )
-def test_how_circles_are_computed(settings, found):
-    assert iteration_of(settings) == found
+def test_how_circles_are_computed(settings, result):
+    assert iteration_of(settings) == result

@@ -91,8 +91,8 @@ def test_the_first_free_number_or_our_own_is_found(tmp_path):
     wanted = tmp_path / "a.html"
     assert free_target(wanted, "case.xlsx") == (wanted, None)
     page(wanted, b"mine")
-    found, reason = free_target(wanted, "case.xlsx")
-    assert found == tmp_path / "a-2.html"
+    result, reason = free_target(wanted, "case.xlsx")
+    assert result == tmp_path / "a-2.html"
     assert "xlmc did not write it" in reason
     (tmp_path / "a-2.html").mkdir()
     (tmp_path / "a-3.html").symlink_to("nowhere")

@@ -32,7 +32,7 @@ def test_decode(text, decoded):
 def encode(text):
     """What Excel writes: an underscore that would start an escape is escaped itself, and so are control characters."""
     guarded = re.sub("_(?=x[0-9A-Fa-f]{4}[_\0-\x1f])", "_x005F_", text)
-    return re.sub("[\0-\x1f]", lambda found: f"_x{ord(found[0]):04X}_", guarded)
+    return re.sub("[\0-\x1f]", lambda result: f"_x{ord(result[0]):04X}_", guarded)
 
 
 @given(st.lists(st.sampled_from(["_", "x", "0041", "_x000a_", "_x005F_", "\n", "\x01", "é", "km/h"])).map("".join))

@@ -58,9 +58,9 @@ def csv_file(tmp_path):
     ],
 )
 def test_a_typed_value_is_what_excel_makes_of_it(book, text, value):
-    found = typed_value(text, book)
-    assert found == value
-    assert type(found) is type(value)
+    result = typed_value(text, book)
+    assert result == value
+    assert type(result) is type(value)
 
 
 def test_a_typed_date_counts_from_the_first_day_of_its_workbook(workbook):
@@ -113,21 +113,21 @@ def test_what_is_no_change_is_refused(book, text, message):
 @pytest.mark.parametrize("mark", [",", ";", "\t"])
 def test_rows_are_typed_into_the_cells_of_their_headings(book, csv_file, mark):
     lines = [["# case", "S!A1", "B2"], ["dry", "4.2", ""], ["", "", ""], ["wet", "TRUE", "x"]]
-    found = read_value_rows(csv_file("\ufeff" + "\r\n".join(mark.join(line) for line in lines)), book)
+    result = read_value_rows(csv_file("\ufeff" + "\r\n".join(mark.join(line) for line in lines)), book)
     a, b = Cell("S", 1, 1), Cell("S", 2, 2)
-    assert found.headings == ("# case", "S!A1", "B2")
-    assert found.rows == ({a: 4.2, b: None}, {a: True, b: "x"})
-    assert found.given == (
+    assert result.headings == ("# case", "S!A1", "B2")
+    assert result.rows == ({a: 4.2, b: None}, {a: True, b: "x"})
+    assert result.given == (
         {"# case": "dry", "S!A1": 4.2, "B2": None},
         {"# case": "wet", "S!A1": True, "B2": "x"},
     )
 
 
 def test_cells_listed_one_below_the_other_are_one_row(book, csv_file):
-    found = read_value_rows(csv_file("Cell,Value,Note\nRate,0.5,\nS!B2,x,why\n"), book)
-    assert found.headings == ()
-    assert found.given == ({},)
-    assert found.rows == ({Cell("S", 1, 1): 0.5, Cell("S", 2, 2): "x"},)
+    result = read_value_rows(csv_file("Cell,Value,Note\nRate,0.5,\nS!B2,x,why\n"), book)
+    assert result.headings == ()
+    assert result.given == ({},)
+    assert result.rows == ({Cell("S", 1, 1): 0.5, Cell("S", 2, 2): "x"},)
 
 
 def test_a_text_over_two_lines_counts_as_two(book, csv_file):

@@ -42,9 +42,9 @@ def test_a_module_sheet_keeps_its_place():
     module = b'<sheets><sheet name="Module1" sheetId="9" state="veryHidden" r:id=""/>'
     workbook = parts["xl/workbook.xml"].replace(b"<sheets>", module).replace(b'localSheetId="1"', b'localSheetId="2"')
     host = {**parts, "xl/workbook.xml": workbook}
-    found = read_workbook(package_bytes(host))
-    assert list(found.sheets) == ["One", "Two"]
-    assert [(name.name, name.sheet) for name in found.names] == [("local", "Two")]
+    result = read_workbook(package_bytes(host))
+    assert list(result.sheets) == ["One", "Two"]
+    assert [(name.name, name.sheet) for name in result.names] == [("local", "Two")]
     again = read_workbook(checked_bytes(inject(host, RESULTS), host))
     assert list(again.sheets) == ["One", "Two", "Results"]
     assert [name.sheet for name in again.names if name.name == "local"] == ["Two"]
@@ -63,8 +63,8 @@ def test_values_as_excel_reads_them(old, new, cell, value):
     parts = built(two_sheets)
     sheet = "xl/worksheets/sheet1.xml"
     assert old in parts[sheet].decode()
-    found = read_workbook(package_bytes({**parts, sheet: parts[sheet].decode().replace(old, new).encode()}))
-    assert found.content(Cell("One", 1, 1)).value == value
+    result = read_workbook(package_bytes({**parts, sheet: parts[sheet].decode().replace(old, new).encode()}))
+    assert result.content(Cell("One", 1, 1)).value == value
 
 
 @pytest.mark.parametrize("number", ["1_5", "١٥", "1\u00a0", "\u00a01", "0x10", "nan", "1e999", "１５", "1 5", "--1"])
@@ -88,8 +88,8 @@ def test_whole_columns_and_rows_can_be_merged(merged, area):
     parts = built(two_sheets)
     sheet = "xl/worksheets/sheet1.xml"
     merging = f'</sheetData><mergeCells count="1"><mergeCell ref="{merged}"/></mergeCells>'.encode()
-    found = read_workbook(package_bytes({**parts, sheet: parts[sheet].replace(b"</sheetData>", merging)}))
-    assert found.sheets["One"].merged == (area,)
+    result = read_workbook(package_bytes({**parts, sheet: parts[sheet].replace(b"</sheetData>", merging)}))
+    assert result.sheets["One"].merged == (area,)
 
 
 def test_part_names_with_backslashes_are_read_as_excel_reads_them():

@@ -35,13 +35,13 @@ def filled(blocks):
 def test_columns_are_what_was_added(monkeypatch, blocks, in_memory):
     monkeypatch.setattr(column_store, "IN_MEMORY", in_memory)
     monkeypatch.setattr(column_store, "WRITTEN", 3000)
-    found, expected = filled(blocks)
-    assert list(found) == ["speed", "trial", "none"]
-    assert len(found) == 3
+    result, expected = filled(blocks)
+    assert list(result) == ["speed", "trial", "none"]
+    assert len(result) == 3
     for name, values in expected.items():
-        assert found[name].tolist() == values
-        assert found[name].dtype == TYPES[NAMES[name]]
-    assert on_disk(found["speed"]) == (16 * len(expected["speed"]) > in_memory)
+        assert result[name].tolist() == values
+        assert result[name].dtype == TYPES[NAMES[name]]
+    assert on_disk(result["speed"]) == (16 * len(expected["speed"]) > in_memory)
 
 
 def test_every_column_of_a_keeper_may_be_asked_for_twice():
@@ -99,11 +99,11 @@ def test_columns_in_one_piece_of_memory_are_what_was_added(monkeypatch, in_memor
             keeper.add(key, room if number % 2 else room.copy())
             numbers += room.tolist()
         keeper.write_if_full()
-    found = keeper.columns({key: key for key in expected})
-    assert {key: column.tolist() for key, column in found.items()} == expected
-    assert {key: column.dtype for key, column in found.items()} == {**types, "e": types["a"]}
+    result = keeper.columns({key: key for key in expected})
+    assert {key: column.tolist() for key, column in result.items()} == expected
+    assert {key: column.dtype for key, column in result.items()} == {**types, "e": types["a"]}
     if in_memory > 100:
-        assert found["a"].base is found["b"].base is not found["d"].base
+        assert result["a"].base is result["b"].base is not result["d"].base
 
 
 REAL = np.dtype(np.float64)
@@ -119,8 +119,8 @@ def stored_files(monkeypatch, tmp_path, expected, rows, blocks=4):
         for key in keys:
             store.add(key, part + 1e6 * key)
         store.write_if_full()
-    found = store.columns({str(key): key for key in keys})
-    assert all(np.array_equal(found[str(key)], np.arange(float(rows)) + 1e6 * key) for key in keys)
+    result = store.columns({str(key): key for key in keys})
+    assert all(np.array_equal(result[str(key)], np.arange(float(rows)) + 1e6 * key) for key in keys)
     (folder,) = tmp_path.iterdir()
     return {file.name: file.stat().st_size for file in folder.iterdir()}
 
@@ -176,9 +176,9 @@ def test_first_rows_of_columns_of_different_lengths(rows):
     store.add("x", np.arange(4.0))
     store.add("n", np.arange(3))
     store.write_if_full()
-    found = store.columns(NAMES, rows)
-    assert found["speed"].tolist() == [0, 1, 2, 3][:rows]
-    assert found["trial"].tolist() == [0, 1, 2][:rows]
+    result = store.columns(NAMES, rows)
+    assert result["speed"].tolist() == [0, 1, 2, 3][:rows]
+    assert result["trial"].tolist() == [0, 1, 2][:rows]
 
 
 def test_files_grow_at_their_end():

@@ -68,9 +68,9 @@ VALUES = st.one_of(st.floats(allow_nan=False), st.sampled_from((0.0, 1.0, 2.0)))
 @given(st.lists(VALUES, max_size=20 * RUN), st.integers(1, 30))
 def test_a_column_on_disk_is_sorted_as_in_memory(stored, values, times):
     column = np.array(values * times, float)
-    found = ascending(stored(column))
-    assert np.array_equal(found, np.sort(column))
-    assert on_disk(found) == (column.size > 0)
+    result = ascending(stored(column))
+    assert np.array_equal(result, np.sort(column))
+    assert on_disk(result) == (column.size > 0)
 
 
 @pytest.mark.parametrize("share_of_ties", [0.0, 0.5, 0.999, 1.0])

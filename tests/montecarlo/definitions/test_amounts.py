@@ -15,7 +15,7 @@ from xlmc.montecarlo.definitions.amounts import (
 
 
 @pytest.mark.parametrize(
-    ("given", "found"),
+    ("given", "result"),
     [
         ("1%", (0.01, True)),
         (" 1 % ", (0.01, True)),
@@ -25,8 +25,8 @@ from xlmc.montecarlo.definitions.amounts import (
         ("250%", (2.5, True)),
     ],
 )
-def test_precisions(given, found):
-    assert as_tolerance(given) == found
+def test_precisions(given, result):
+    assert as_tolerance(given) == result
 
 
 @pytest.mark.parametrize("given", ["0", "0%", "-1", "-1%", "inf", "nan", "", "%", "1 mph", "1%%"])
@@ -36,7 +36,7 @@ def test_what_is_no_precision(given):
 
 
 @pytest.mark.parametrize(
-    ("given", "found"),
+    ("given", "result"),
     [
         ("mean", ("mean",)),
         (" Mean , SD,mean", ("mean", "sd")),
@@ -44,8 +44,8 @@ def test_what_is_no_precision(given):
         (["P5", "p95"], ("p5", "p95")),
     ],
 )
-def test_numbers_whose_precision_counts(given, found):
-    assert as_numbers(given) == found
+def test_numbers_whose_precision_counts(given, result):
+    assert as_numbers(given) == result
 
 
 @pytest.mark.parametrize("given", ["", "median", "p0", "p100", "p-5", "p5,", "sd mean", "pp5"])
@@ -60,11 +60,11 @@ def test_at_least_one_is_named():
 
 
 @pytest.mark.parametrize(
-    ("given", "found"),
+    ("given", "result"),
     [("95%", 0.95), ("95", 0.95), (0.95, 0.95), ("0.5%", 0.005), (1, 0.01), (99.9, 0.999), ("0.999", 0.999)],
 )
-def test_confidences(given, found):
-    assert as_confidence(given) == pytest.approx(found, rel=1e-15)
+def test_confidences(given, result):
+    assert as_confidence(given) == pytest.approx(result, rel=1e-15)
 
 
 @pytest.mark.parametrize("given", ["0", "100", "100%", "-5", "0%", "high", "101", "nan"])
@@ -74,7 +74,7 @@ def test_what_is_no_confidence(given):
 
 
 @pytest.mark.parametrize(
-    ("given", "found"),
+    ("given", "result"),
     [
         ("60s", 60.0),
         ("5m", 300.0),
@@ -87,8 +87,8 @@ def test_what_is_no_confidence(given):
         ("2h5s", 7205.0),
     ],
 )
-def test_durations(given, found):
-    assert as_seconds(given) == found
+def test_durations(given, result):
+    assert as_seconds(given) == result
 
 
 @pytest.mark.parametrize("given", ["", "0", "0s", "-1", "1d", "5 m 1 h", "soon", "1h30m20s5"])
@@ -98,7 +98,7 @@ def test_what_is_no_duration(given):
 
 
 @pytest.mark.parametrize(
-    ("text", "found"),
+    ("text", "result"),
     [
         ("7", 7),
         ("+7", 7),
@@ -127,5 +127,5 @@ def test_what_is_no_duration(given):
         ("many", None),
     ],
 )
-def test_whole_numbers(text, found):
-    assert typed_whole_number(text) == found
+def test_whole_numbers(text, result):
+    assert typed_whole_number(text) == result

@@ -50,11 +50,11 @@ def read(make_book, blocks):
 
 @pytest.mark.parametrize("name", ROWS)
 def test_a_row_of_each(read, name):
-    found = read(name.casefold(), ROWS[name])
-    assert found.problems == (), [str(problem) for problem in found.problems]
-    assert found.notices == ()
-    assert found.assumptions[0].distribution == name
-    assert sorted(found.assumptions[0].parameters.values()) == sorted(ROWS[name].values())
+    result = read(name.casefold(), ROWS[name])
+    assert result.problems == (), [str(problem) for problem in result.problems]
+    assert result.notices == ()
+    assert result.assumptions[0].distribution == name
+    assert sorted(result.assumptions[0].parameters.values()) == sorted(ROWS[name].values())
 
 
 @pytest.mark.parametrize(

@@ -117,21 +117,21 @@ def test_sides(sides, low, high, one_sided):
     ],
 )
 def test_a_row_is_a_law(error, sizes, law):
-    found = Evidence("y", AT, AT, -12.0, error, sizes)
-    assert found.law == law
-    assert found.bell == (law if isinstance(law, Bell) else None)
-    assert found.by_chance is isinstance(law, Bell)
+    result = Evidence("y", AT, AT, -12.0, error, sizes)
+    assert result.law == law
+    assert result.bell == (law if isinstance(law, Bell) else None)
+    assert result.by_chance is isinstance(law, Bell)
     assert not Evidence("y", AT, AT, -12.0, error, sizes, weighed=True).by_chance
 
 
 def test_rows_that_do_not_count():
     assert Evidence("y", AT, AT, 1.0, "uniform").used
     for why, can in (("", True), (USE_IS_OFF, True), ("it has no reading", False)):
-        found = Evidence("y", AT, AT, 1.0, "uniform", unused=why)
-        assert (found.used, found.can_be_used) == (not why, can)
+        result = Evidence("y", AT, AT, 1.0, "uniform", unused=why)
+        assert (result.used, result.can_be_used) == (not why, can)
 
 
 def test_cells_and_streams():
-    found = Evidence(" Skid ", AT, AT, Cell("S", 2, 2), "normal", {"std_dev": Cell("S", 3, 2), "percent": 1.0})
-    assert list(found.cells) == [Cell("S", 2, 2), Cell("S", 3, 2)]
-    assert found.stream == "evidence\x1fskid"  # that of an item spelt otherwise
+    result = Evidence(" Skid ", AT, AT, Cell("S", 2, 2), "normal", {"std_dev": Cell("S", 3, 2), "percent": 1.0})
+    assert list(result.cells) == [Cell("S", 2, 2), Cell("S", 3, 2)]
+    assert result.stream == "evidence\x1fskid"  # that of an item spelt otherwise

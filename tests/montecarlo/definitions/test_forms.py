@@ -104,7 +104,7 @@ def test_what_is_no_number_is_not_written(form, value):
 
 
 @pytest.mark.parametrize(
-    ("form", "found", "estimate", "value", "spread"),
+    ("form", "result", "estimate", "value", "spread"),
     [
         ("plain", (1.23456, 0.012), "1.235 ± 0.012", "1.235", "1.235 ± 0.012"),
         ("plain", (-48210.0, 870.0), "-48,210 ± 870", "-48,210", "-48,210 ± 870"),
@@ -124,8 +124,8 @@ def test_what_is_no_number_is_not_written(form, value):
         ("day", (math.nan, None), "", "", ""),
     ],
 )
-def test_numbers_with_errors(form, found, estimate, value, spread):
-    written, given = FORMS[form], Estimate(*found)
+def test_numbers_with_errors(form, result, estimate, value, spread):
+    written, given = FORMS[form], Estimate(*result)
     assert (written.estimate(given), written.value(given), written.spread(given)) == (estimate, value, spread)
 
 
@@ -197,8 +197,8 @@ DAY, HOUR, MINUTE, SECOND = 1.0, 1 / 24, 1 / 1440, 1 / 86_400
     ],
 )
 def test_steps_in_which_numbers_are_stated(form, error, step):
-    found = FORMS[form].step(error)
-    assert found is None if step is None else found == pytest.approx(step)
+    result = FORMS[form].step(error)
+    assert result is None if step is None else result == pytest.approx(step)
 
 
 @pytest.mark.parametrize(

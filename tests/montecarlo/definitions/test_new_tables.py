@@ -38,14 +38,14 @@ def test_what_stands_in_tables_is_not_new(changed_book, defined):
 
 
 def test_every_row_is_written_out(bare, defined):
-    found = new_tables(bare, defined)
-    assert [table.kind for table in found] == [
+    result = new_tables(bare, defined)
+    assert [table.kind for table in result] == [
         "xlmc_assumptions",
         "xlmc_forecasts",
         "xlmc_filters",
         "xlmc_correlations",
     ]
-    assert [table.headings for table in found] == [
+    assert [table.headings for table in result] == [
         (
             *("Name", "Cell", "Distribution", "Low", "High", "Mean", "Std dev", "Low likeliest", "High likeliest"),
             *("Likeliest", "Lower cutoff", "Upper cutoff", "Units", "Frozen", "Source"),
@@ -54,7 +54,7 @@ def test_every_row_is_written_out(bare, defined):
         ("Name", "Cell", "At least", "Below", "Because"),
         ("First", "Second", "Correlation"),
     ]
-    assumptions = rows(found, "xlmc_assumptions")
+    assumptions = rows(result, "xlmc_assumptions")
     assert [row["Cell"] for row in assumptions] == [f"=Inputs!B{row}" for row in range(2, 7)]
     weight, _, reaction, friction, gravity = assumptions
     assert (weight["Distribution"], weight["Low"], weight["High"]) == ("Uniform", 6661.0, 6861.0)
@@ -63,13 +63,13 @@ def test_every_row_is_written_out(bare, defined):
     assert (friction["Distribution"], friction["High likeliest"]) == ("Trapezoid", 0.85)
     assert gravity["Frozen"] is True
     assert "Frozen" not in weight
-    assert rows(found, "xlmc_forecasts") == [{"Name": "Speed", "Cell": "=Model!B1", "Units": "mph"}]
-    assert rows(found, "xlmc_filters") == [
+    assert rows(result, "xlmc_forecasts") == [{"Name": "Speed", "Cell": "=Model!B1", "Units": "mph"}]
+    assert rows(result, "xlmc_filters") == [
         {"Name": "e", "Cell": "=Model!B2", "At least": 0.0, "Below": 1.0, "Only for": "", "Because": "engagement"},
         {"Name": "Positive", "Cell": "=Model!B3", "Only for": "", "Because": "rest positions"},
     ]
-    assert rows(found, "xlmc_correlations") == [{"First": "Weight", "Second": "Friction", "Correlation": 0.5}]
-    saved = [row.cells["Cell"].value for row in found[0].rows]
+    assert rows(result, "xlmc_correlations") == [{"First": "Weight", "Second": "Friction", "Correlation": 0.5}]
+    saved = [row.cells["Cell"].value for row in result[0].rows]
     assert saved == [6761.0, 186.0, 1.25, 0.78, 32.174]
 
 
@@ -96,14 +96,14 @@ def test_rows_of_one_table_that_is_there_are_left_out(changed_book, defined):
 )
 def test_what_is_asked_of_a_forecast(bare, defined, changed, written):
     forecast = replace(defined.forecasts[0], **changed)
-    found = new_tables(bare, replace(defined, forecasts=(forecast,)))
-    assert rows(found, "xlmc_forecasts") == [{"Name": "Speed", "Cell": "=Model!B1", "Units": "mph", **written}]
+    result = new_tables(bare, replace(defined, forecasts=(forecast,)))
+    assert rows(result, "xlmc_forecasts") == [{"Name": "Speed", "Cell": "=Model!B1", "Units": "mph", **written}]
 
 
 def test_a_filter_of_some_forecasts(bare, defined):
     own = Filter("own", Cell("Model", 1, 2), Cell("Model", 1, 2), at_most=0.0, only_for=("Speed", "x"))
-    found = rows(new_tables(bare, replace(defined, forecast_filters=(own,))), "xlmc_filters")
-    assert found[-1] == {"Name": "own", "Cell": "=Model!B1", "At most": 0.0, "Only for": "Speed; x", "Because": ""}
+    result = rows(new_tables(bare, replace(defined, forecast_filters=(own,))), "xlmc_filters")
+    assert result[-1] == {"Name": "own", "Cell": "=Model!B1", "At most": 0.0, "Only for": "Speed; x", "Because": ""}
     twice = replace(defined, forecast_filters=(own,), left_out=(replace(own, only_for=("gone",)),))
     assert rows(new_tables(bare, twice), "xlmc_filters")[-1]["Only for"] == "Speed; x; gone"
     alone = replace(defined, left_out=(own,))
@@ -125,8 +125,8 @@ def test_decisions_a_step_apart(bare, defined):
 
 def test_a_run_of_dialogs_has_its_settings(bare, changed_book, defined):
     drawn = replace(defined, assumptions=tuple(replace(each, source=DIALOG) for each in defined.assumptions))
-    found = rows(new_tables(bare, drawn), "xlmc_settings")
-    assert found == [
+    result = rows(new_tables(bare, drawn), "xlmc_settings")
+    assert result == [
         {"Setting": "Trials", "Value": 5000.0},
         {"Setting": "Seed", "Value": 7.0},
         {"Setting": "Sampling", "Value": "mc"},
@@ -149,6 +149,6 @@ def test_the_precision_that_dialogs_ask_for(bare, defined, tolerance, relative, 
     stopping = replace(defined.settings.stopping, goal=goal, forecasts=names)
     drawn = tuple(replace(each, source=DIALOG) for each in defined.assumptions)
     given = replace(defined, assumptions=drawn, settings=replace(defined.settings, stopping=stopping))
-    found = {row["Setting"]: row["Value"] for row in rows(new_tables(bare, given), "xlmc_settings")}
+    result = {row["Setting"]: row["Value"] for row in rows(new_tables(bare, given), "xlmc_settings")}
     more = {"Precision of": "mean, sd", "Confidence %": 90.0} if written else {}
-    assert found == {"Seed": 7.0, "Sampling": "mc", **written, **more}
+    assert result == {"Seed": 7.0, "Sampling": "mc", **written, **more}

@@ -14,8 +14,8 @@ BEAM = {
 }  # fmt: skip
 
 
-def places(found):
-    return [str(each.cell) for each in found]
+def places(result):
+    return [str(each.cell) for each in result]
 
 
 def area(row, column, bottom=None, right=None):
@@ -23,18 +23,18 @@ def area(row, column, bottom=None, right=None):
 
 
 def test_numbers_that_formulas_use_and_formulas_that_none_uses(make_book):
-    found = proposals(make_book(BEAM))
-    assert [(str(each.cell), each.name, each.units, each.value) for each in found.assumptions] == [
+    result = proposals(make_book(BEAM))
+    assert [(str(each.cell), each.name, each.units, each.value) for each in result.assumptions] == [
         ("S!B1", "Load", "kN", 12.0),
         ("S!B2", "Span", "m", 4.0),
     ]
-    assert [(str(each.cell), each.name, each.value) for each in found.forecasts] == [("S!B5", "Twice", 24.0)]
-    assert (found.further, found.passed_over) == (0, ())
+    assert [(str(each.cell), each.name, each.value) for each in result.forecasts] == [("S!B5", "Twice", 24.0)]
+    assert (result.further, result.passed_over) == (0, ())
 
 
 def test_what_a_table_has_already_is_left_out(make_book):
-    found = proposals(make_book(BEAM), known=[Cell("S", 1, 2), Cell("S", 5, 2)])
-    assert (places(found.assumptions), places(found.forecasts)) == (["S!B2"], [])
+    result = proposals(make_book(BEAM), known=[Cell("S", 1, 2), Cell("S", 5, 2)])
+    assert (places(result.assumptions), places(result.forecasts)) == (["S!B2"], [])
 
 
 @pytest.mark.parametrize(("rows", "count"), [(24, 24), (25, 0)])
@@ -52,22 +52,22 @@ def test_a_block_is_as_long_as_it_has_cells(make_book):
 
 def test_no_more_answers_than_a_report_can_have_and_the_others_are_counted(make_book):
     cells = {"S!A1": 1, **{f"S!B{row}": (f"=A1+{row}", 1.0) for row in range(1, MOST_FORECASTS + 4)}}
-    found = proposals(make_book(cells))
+    result = proposals(make_book(cells))
     assert MOST_FORECASTS == 24
-    assert places(found.forecasts) == [f"S!B{row}" for row in range(1, 25)]
-    assert found.further == 3
+    assert places(result.forecasts) == [f"S!B{row}" for row in range(1, 25)]
+    assert result.further == 3
     every = proposals(make_book(cells), forecasts=[area(1, 2, 27)])
     assert len(every.forecasts) == 27
     assert every.further == 0
 
 
 def test_an_answer_that_cannot_be_computed_is_passed_over_and_told(make_book):
-    found = proposals(make_book({"S!A1": 1, "S!B1": ("=A1*2", 2.0), "S!B2": ("=NOSUCH(A1)", 3.0)}))
-    assert places(found.forecasts) == ["S!B1"]
-    ((cell, why),) = found.passed_over
+    result = proposals(make_book({"S!A1": 1, "S!B1": ("=A1*2", 2.0), "S!B2": ("=NOSUCH(A1)", 3.0)}))
+    assert places(result.forecasts) == ["S!B1"]
+    ((cell, why),) = result.passed_over
     assert cell == Cell("S", 2, 2)
     assert why.startswith("cannot be computed (")
-    assert found.further == 0
+    assert result.further == 0
 
 
 @pytest.mark.parametrize(
@@ -79,18 +79,18 @@ def test_answers_are_numbers(make_book, value, proposed):
 
 
 def test_an_answer_depends_on_an_input(make_book):
-    found = proposals(make_book({"S!A1": 1, "S!B1": ("=A1*2", 2.0), "S!B2": ("=3*2", 6.0)}))
-    assert places(found.forecasts) == ["S!B1"]
-    found = proposals(make_book(BEAM | {"S!D1": ("=B6*2", 14.0)}), assumptions=[area(6, 2)])
-    assert places(found.forecasts) == ["S!D1"]
+    result = proposals(make_book({"S!A1": 1, "S!B1": ("=A1*2", 2.0), "S!B2": ("=3*2", 6.0)}))
+    assert places(result.forecasts) == ["S!B1"]
+    result = proposals(make_book(BEAM | {"S!D1": ("=B6*2", 14.0)}), assumptions=[area(6, 2)])
+    assert places(result.forecasts) == ["S!D1"]
 
 
 def test_names_that_are_taken_have_their_cell_behind(make_book):
     cells = {"S!A1": "x", "S!B1": 1, "S!A2": "X ", "S!B2": 2, "S!D1": ("=B1+B2", 3.0)}
-    found = proposals(make_book(cells))
-    assert [each.name for each in found.assumptions] == ["x", "X (B2)"]
-    found = proposals(make_book(cells | {"T!A1": 5}))
-    assert [each.name for each in found.assumptions] == ["x", "X (S!B2)"]
+    result = proposals(make_book(cells))
+    assert [each.name for each in result.assumptions] == ["x", "X (B2)"]
+    result = proposals(make_book(cells | {"T!A1": 5}))
+    assert [each.name for each in result.assumptions] == ["x", "X (S!B2)"]
 
 
 @pytest.mark.parametrize(
@@ -103,9 +103,9 @@ def test_names_that_are_taken_have_their_cell_behind(make_book):
     ],
 )
 def test_inputs_that_are_asked_for(make_book, asked, places_, passed):
-    found = proposals(make_book(BEAM), assumptions=asked)
-    assert places(found.assumptions) == places_
-    assert [(str(cell), why) for cell, why in found.passed_over] == passed
+    result = proposals(make_book(BEAM), assumptions=asked)
+    assert places(result.assumptions) == places_
+    assert [(str(cell), why) for cell, why in result.passed_over] == passed
 
 
 @pytest.mark.parametrize(
@@ -135,5 +135,5 @@ def test_a_book_without_formulas(make_book):
 def test_formulas_of_tables_of_definitions_are_no_answers(make_book):
     cells = BEAM | {"S!H1": "Name", "S!I1": "Cell", "S!H2": "Load", "S!I2": ("=B1*1", 12.0)}
     assert "S!I2" in places(proposals(make_book(cells)).forecasts)
-    found = proposals(make_book(cells, [("xlmc_assumptions", "S!H1:I2")]))
-    assert places(found.forecasts) == ["S!B5"]
+    result = proposals(make_book(cells, [("xlmc_assumptions", "S!H1:I2")]))
+    assert places(result.forecasts) == ["S!B5"]

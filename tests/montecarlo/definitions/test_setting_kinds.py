@@ -62,8 +62,8 @@ def test_the_record_gives_a_setting_back_and_a_command_says_it(kind, value, entr
 
 
 def test_a_sheet_may_hold_a_whole_number_as_a_float():
-    found = TRIALS.recorded(7.0)
-    assert (found, type(found)) == (7, int)
+    result = TRIALS.recorded(7.0)
+    assert (result, type(result)) == (7, int)
     for wrong in (7.5, "7"):
         with pytest.raises(ValueError, match="is not a whole number"):
             TRIALS.recorded(wrong)

@@ -32,10 +32,10 @@ from xlmc.montecarlo.definitions.stopping import NO_GOAL, AcceptedTrials, Precis
     ],
 )
 def test_what_is_asked_for(given, expected):
-    found = stopping(**given)
-    assert found == expected
-    assert found.has_goal == bool({"until_accepted", "precision", "adaptive"} & set(given))
-    assert found.asked == bool(given)
+    result = stopping(**given)
+    assert result == expected
+    assert result.has_goal == bool({"until_accepted", "precision", "adaptive"} & set(given))
+    assert result.asked == bool(given)
 
 
 @pytest.mark.parametrize(

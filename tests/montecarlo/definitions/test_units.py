@@ -27,8 +27,8 @@ from xlmc.montecarlo.definitions.units import factor_between
     ],
 )
 def test_units(source, target, factor):
-    found = factor_between(source, target)
-    assert found is None if factor is None else found == pytest.approx(factor, rel=1e-12)
+    result = factor_between(source, target)
+    assert result is None if factor is None else result == pytest.approx(factor, rel=1e-12)
 
 
 IN_SI = {
@@ -50,6 +50,6 @@ IN_SI = {
 def test_every_unit_is_as_much_of_the_si_unit_as_it_is():
     listed = {si: dict(row.rsplit(" ", 1) for row in rows.split(", ")) for si, rows in IN_SI.items()}
     assert {unit for rows in listed.values() for unit in rows} == set(units._UNITS)
-    found = {unit: factor_between(unit, si) for si, rows in listed.items() for unit in rows}
+    result = {unit: factor_between(unit, si) for si, rows in listed.items() for unit in rows}
     wanted = {unit: float(factor) for rows in listed.values() for unit, factor in rows.items()}
-    assert found == pytest.approx(wanted, rel=1e-14)
+    assert result == pytest.approx(wanted, rel=1e-14)

@@ -55,15 +55,15 @@ def book(tmp_path):
     """Writes a book of XLRisk's layout, with other contents in some cells: `S!A1` of a sheet, `A1` of its own."""
 
     def made(changes=None, *, model="Model", names=True):
-        found = openpyxl.Workbook()
-        found.active.title = model
-        sheet = found.create_sheet("XLRisk")
+        result = openpyxl.Workbook()
+        result.active.title = model
+        sheet = result.create_sheet("XLRisk")
         for address, content in {**SHEET, **{f"{model}!{at}": v for at, v in MODEL.items()}, **(changes or {})}.items():
             where, _, at = address.rpartition("!")
-            (found[where] if where else sheet)[at] = content
+            (result[where] if where else sheet)[at] = content
         for name, at in NAMES.items() if names else ():
             sheet.defined_names[name] = DefinedName(name, attr_text=f"XLRisk!{at}")
-        found.save(tmp_path / "book.xlsx")
+        result.save(tmp_path / "book.xlsx")
         return tmp_path / "book.xlsx"
 
     return made
@@ -89,9 +89,9 @@ def test_a_table_of_settings_and_the_command_win(book, tmp_path):
     from openpyxl.worksheet.table import Table
 
     path = book({"Model!D1": "Setting", "Model!E1": "Value", "Model!D2": "Seed", "Model!E2": 5})
-    found = openpyxl.load_workbook(path)
-    found["Model"].add_table(Table(displayName="xlmc_settings", ref="D1:E2"))
-    found.save(path)
+    result = openpyxl.load_workbook(path)
+    result["Model"].add_table(Table(displayName="xlmc_settings", ref="D1:E2"))
+    result.save(path)
     model = load(path)
     assert (model.definitions.settings.seed, model.definitions.settings.trials) == (5, 2000)
     assert simulated(model, trials=100, seed=9, sampling="mc").trials == 100

@@ -49,34 +49,34 @@ def within(tolerance):
     return {"plus_minus": tolerance}
 
 
-def close(found, truth):
+def close(result, truth):
     """Within four standard errors."""
-    return abs(found.value - truth) < 4 * found.error
+    return abs(result.value - truth) < 4 * result.error
 
 
 def test_one_item_keeps_what_is_known_and_its_weights_give_the_known_answers(judged):
     """X ~ N(0, 1), a reading of 1 with a standard deviation of 0.5: the share is √0.2·exp(-0.4)."""
-    found = judged(EDR=("C1", 1, bell(0.5)))
-    (item,) = found.items
-    assert close(found.together, 0.299776)
-    assert found.effective / found.past == pytest.approx(0.420470, rel=0.02)
-    weighted = next(each for each in found.answers if each.used == "all evidence" and each.forecast == "a")
+    result = judged(EDR=("C1", 1, bell(0.5)))
+    (item,) = result.items
+    assert close(result.together, 0.299776)
+    assert result.effective / result.past == pytest.approx(0.420470, rel=0.02)
+    weighted = next(each for each in result.answers if each.used == "all evidence" and each.forecast == "a")
     assert close(weighted.mean, 0.8)
     assert close(weighted.standard_deviation, 0.447214)
-    assert weighted.effective == pytest.approx(found.effective)
+    assert weighted.effective == pytest.approx(result.effective)
     assert item.chance == pytest.approx(2 * ndtr(-1 / math.hypot(1, 0.5)), rel=0.02)
     assert item.best_z < 0.01
     assert item.mean_z == pytest.approx(0.4, abs=0.02)
-    assert found.verdict is Verdict.INDEPENDENT
-    assert "there is no other item" in found.sentence
+    assert result.verdict is Verdict.INDEPENDENT
+    assert "there is no other item" in result.sentence
 
 
 def test_a_sharp_reading_in_the_middle_is_not_strained_though_it_keeps_hardly_a_trial(judged):
-    found = judged(sharp=("C1", 0, within(0.001)))
-    assert found.items[0].alone.value < 0.002
-    assert found.items[0].chance > 0.95
-    assert re.fullmatch("9[5-9] %|100 %", found.items[0].chance_text)
-    assert found.verdict is Verdict.INDEPENDENT
+    result = judged(sharp=("C1", 0, within(0.001)))
+    assert result.items[0].alone.value < 0.002
+    assert result.items[0].chance > 0.95
+    assert re.fullmatch("9[5-9] %|100 %", result.items[0].chance_text)
+    assert result.verdict is Verdict.INDEPENDENT
 
 
 @pytest.mark.parametrize(
@@ -110,11 +110,11 @@ def test_where_a_reading_lies_decides(judged, cell, reading, error, verdict):
 
 def test_a_chance_that_no_trial_shows_is_told_as_a_bound(judged):
     """Of 800 trials, none lies near 5.5: below Wilson's upper end on both sides, 2 × 1.96²/(800 + 1.96²)."""
-    found = judged(trials=100, item=("C1", 5.5, bell(0.1)))
-    assert (found.trials, found.verdict) == (800, Verdict.STRAINED)
-    assert found.items[0].chance < 1e-30
-    assert found.items[0].chance_text == "below 0.96 %"
-    assert found.sentence == "'item' is strained: given the model, a reading so far out has a chance below 0.96 %"
+    result = judged(trials=100, item=("C1", 5.5, bell(0.1)))
+    assert (result.trials, result.verdict) == (800, Verdict.STRAINED)
+    assert result.items[0].chance < 1e-30
+    assert result.items[0].chance_text == "below 0.96 %"
+    assert result.sentence == "'item' is strained: given the model, a reading so far out has a chance below 0.96 %"
 
 
 @pytest.mark.parametrize(
@@ -137,13 +137,13 @@ def test_a_chance_is_a_number_where_a_trial_on_each_side_shows_it(chance, effect
 
 
 def test_items_about_one_quantity_corroborate_and_others_are_independent(judged):
-    found = judged(EDR=("C1", 0.5, bell(0.5)), video=("C1", 0.4, within(0.5)))
-    assert {each.verdict for each in found.items} == {found.verdict} == {Verdict.CORROBORATES}
-    assert found.ratio.value > 1.5
-    for each in found.items:
-        assert each.ratio.value == pytest.approx(found.ratio.value)
+    result = judged(EDR=("C1", 0.5, bell(0.5)), video=("C1", 0.4, within(0.5)))
+    assert {each.verdict for each in result.items} == {result.verdict} == {Verdict.CORROBORATES}
+    assert result.ratio.value > 1.5
+    for each in result.items:
+        assert each.ratio.value == pytest.approx(result.ratio.value)
         assert each.given_others.value == pytest.approx(each.ratio.value * each.alone.value)
-    assert "corroborate each other" in found.sentence
+    assert "corroborate each other" in result.sentence
     apart = judged(EDR=("C1", 0.5, bell(0.5)), other=("F1", 1.0, within(0.5)))
     assert apart.verdict is Verdict.INDEPENDENT
     assert close(apart.ratio, 1.0)
@@ -153,58 +153,58 @@ def test_items_about_one_quantity_corroborate_and_others_are_independent(judged)
 
 def test_readings_far_from_all_trials_that_agree_best_are_inconsistent_however_few_each_leaves(judged):
     """Two readings of one quantity, 30 standard deviations apart; either leaves some 900 trials of 20,000."""
-    found = judged(trials=20_000, one=("C1", 1.5, bell(0.1)), two=("C1", -1.5, bell(0.1)))
-    assert all(100 < each.effective < 2_000 for each in found.items)
-    assert found.effective > 100
-    assert {each.verdict for each in found.items} == {Verdict.INCONSISTENT}
-    assert found.conflicts
+    result = judged(trials=20_000, one=("C1", 1.5, bell(0.1)), two=("C1", -1.5, bell(0.1)))
+    assert all(100 < each.effective < 2_000 for each in result.items)
+    assert result.effective > 100
+    assert {each.verdict for each in result.items} == {Verdict.INCONSISTENT}
+    assert result.conflicts
 
 
 def test_two_sound_items_may_be_inconsistent_with_each_other(judged):
-    found = judged(EDR=("C1", 1.5, within(0.2)), video=("C1", -1.5, within(0.2)))
-    assert found.verdict is Verdict.INCONSISTENT
-    assert found.conflicts
-    assert found.together.value == found.ratio.value == 0.0
-    assert "no trial agrees with 'EDR' and 'video' together. Alone they keep" in found.sentence
-    assert [each.used for each in found.answers[:4]] == [
+    result = judged(EDR=("C1", 1.5, within(0.2)), video=("C1", -1.5, within(0.2)))
+    assert result.verdict is Verdict.INCONSISTENT
+    assert result.conflicts
+    assert result.together.value == result.ratio.value == 0.0
+    assert "no trial agrees with 'EDR' and 'video' together. Alone they keep" in result.sentence
+    assert [each.used for each in result.answers[:4]] == [
         "no evidence",
         "all evidence",
         "EDR alone, without video",
         "video alone, without EDR",
     ]
-    assert math.isnan(found.answers[1].mean.value)
-    alone = next(each for each in found.answers if each.items == ("EDR",))
+    assert math.isnan(result.answers[1].mean.value)
+    alone = next(each for each in result.answers if each.items == ("EDR",))
     assert abs(alone.mean.value - 1.487) < 0.02  # of N(0, 1) between 1.3 and 1.7
 
 
 def test_three_items_are_each_left_out(judged):
-    found = judged(x=("C1", 0.5, bell(0.5)), y=("F1", 0.5, bell(0.5)), z=("D1", 4.5, bell(0.2)))
-    last = found.items[2]
+    result = judged(x=("C1", 0.5, bell(0.5)), y=("F1", 0.5, bell(0.5)), z=("D1", 4.5, bell(0.2)))
+    last = result.items[2]
     assert last.verdict is Verdict.INCONSISTENT  # given the other two the sum is N(0.8, 0.4)
     assert last.chance == pytest.approx(2 * ndtr(-(4.5 - 0.8) / math.sqrt(0.44)), rel=0.5)
-    used = [each.used for each in found.answers if each.forecast == "a"]
+    used = [each.used for each in result.answers if each.forecast == "a"]
     assert used[:2] == ["no evidence", "all evidence"]
     assert used[2:] == ["all but x", "all but y", "all but z", "x alone", "y alone", "z alone"]
 
 
 def test_few_trials_are_said_to_be_few(judged):
     rare = {"rare": {"cell": "E1", "at_least": 4.4}}
-    found = judged(2_000, rare, EDR=("C1", 1.0, within(0.5)))
-    assert found.trials == 8 * 2_000  # so many are drawn where few pass the filters
-    assert 0 < found.past < 100
-    assert found.verdict is Verdict.TOO_FEW
-    assert "too few trials to tell" in found.sentence
-    assert found.remarks[0] == found.sentence
+    result = judged(2_000, rare, EDR=("C1", 1.0, within(0.5)))
+    assert result.trials == 8 * 2_000  # so many are drawn where few pass the filters
+    assert 0 < result.past < 100
+    assert result.verdict is Verdict.TOO_FEW
+    assert "too few trials to tell" in result.sentence
+    assert result.remarks[0] == result.sentence
 
 
 def test_inputs_that_press_against_their_ends_are_named(judged, book):
     cells = {"A1": 0.5, "B1": 0.5, "C1": "=A1+B1"}
     both = {name: {"cell": cell, "low": 0, "high": 1} for name, cell in (("a", "A1"), ("b", "B1"))}
     evidence = {"EDR": {"cell": "C1", "reading": 1.95, "error": "at least"}}
-    found = agreement(book(cells, both, {"a": "C1"}, evidence=evidence), SEED, 2 * TRIALS)
-    assert [(each.assumption, each.end) for each in found.pressed] == [("a", "upper"), ("b", "upper")]
-    assert all(each.share > 0.99 for each in found.pressed)
-    assert "the range, not the evidence, decides" in found.remarks[-1]
+    result = agreement(book(cells, both, {"a": "C1"}, evidence=evidence), SEED, 2 * TRIALS)
+    assert [(each.assumption, each.end) for each in result.pressed] == [("a", "upper"), ("b", "upper")]
+    assert all(each.share > 0.99 for each in result.pressed)
+    assert "the range, not the evidence, decides" in result.remarks[-1]
     assert not judged(EDR=("C1", 1, bell(0.5))).pressed
 
 
@@ -244,9 +244,9 @@ def test_the_range_decides_only_where_draws_pile_up_at_its_limit(book, prior, re
         evidence={"EDR": {"cell": "C1", "reading": reading, **error}},
     )
     for seed in (SEED, SEED + 1, SEED + 2):
-        found = agreement(model, seed, 100_000)
-        assert [each.end for each in found.pressed] == ends
-        assert bool(ends) == any("the range, not the evidence" in each for each in found.remarks)
+        result = agreement(model, seed, 100_000)
+        assert [each.end for each in result.pressed] == ends
+        assert bool(ends) == any("the range, not the evidence" in each for each in result.remarks)
 
 
 def test_filters_of_some_forecasts_hold_for_what_evidence_moves(book):
@@ -254,18 +254,18 @@ def test_filters_of_some_forecasts_hold_for_what_evidence_moves(book):
     cell = model.forecasts[0].cell
     own = Filter("positive", cell, cell, at_least=0.0, only_for=("a",))
     definitions = replace(model.definitions, forecast_filters=(own,))
-    found = agreement(CompiledModel(model.workbook, definitions, model.path), SEED, TRIALS)
-    means = {each.forecast: each.mean for each in found.answers if each.used == "no evidence"}
+    result = agreement(CompiledModel(model.workbook, definitions, model.path), SEED, TRIALS)
+    means = {each.forecast: each.mean for each in result.answers if each.used == "no evidence"}
     assert close(means["a"], math.sqrt(2 / math.pi))  # of the half of N(0, 1) above 0
     assert close(means["sum"], 0.0)
-    assert found.past == TRIALS
+    assert result.past == TRIALS
 
 
 def test_what_is_an_error_agrees_with_nothing(book):
     cells = {"A1": 0.0, "C1": "=SQRT(A1)"}
     model = book(cells, {"a": INPUTS["a"]}, {"a": "A1"}, evidence={"EDR": {"cell": "C1", "reading": 1, **bell(0.5)}})
-    found = agreement(model, SEED, TRIALS)
-    alone = next(each for each in found.answers if each.used == "all evidence")
+    result = agreement(model, SEED, TRIALS)
+    alone = next(each for each in result.answers if each.used == "all evidence")
     assert alone.mean.value > 0.3
     run = simulated(model, trials=TRIALS, seed=SEED)
-    assert run.accepted / run.trials == pytest.approx(found.together.value, rel=0.03)
+    assert run.accepted / run.trials == pytest.approx(result.together.value, rel=0.03)

@@ -37,28 +37,28 @@ def told(cells):
     ],
 )
 def test_errors_of_the_base_case(book, forecasts, filters, roots, others, answers):
-    found = errors_at_base(book(CELLS, GIVEN, forecasts, filters))
-    assert (told(found.roots), told(found.others), found.answers) == (roots, others, answers)
+    result = errors_at_base(book(CELLS, GIVEN, forecasts, filters))
+    assert (told(result.roots), told(result.others), result.answers) == (roots, others, answers)
 
 
 def test_parameters_are_looked_at_too(book):
     cells = {**CELLS, "C1": "=1/(A2-4)"}
     given = {"a": {"cell": "A1", "low": 0, "high": "C1"}, "b": GIVEN["b"]}
-    found = errors_at_base(book(cells, given, {"x": "B6"}))
-    assert told(found.roots) == {"C1": DIV0}
+    result = errors_at_base(book(cells, given, {"x": "B6"}))
+    assert told(result.roots) == {"C1": DIV0}
 
 
 def test_cells_of_a_circle_are_roots_together(book):
     cells = {"A1": 1.0, "B1": "=IF(A1>0.5,B2,1)+0*A1", "B2": "=IF(A1>0.5,B1,2)", "B3": "=B2+1"}
-    found = errors_at_base(book(cells, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"x": "B3"}))
-    assert set(told(found.roots)) == {"B1", "B2"}
-    assert set(told(found.others)) == {"B3"}
+    result = errors_at_base(book(cells, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"x": "B3"}))
+    assert set(told(result.roots)) == {"B1", "B2"}
+    assert set(told(result.others)) == {"B3"}
 
 
 def roots(model, names, *drawn):
     cells = {f.name: f.cell for f in model.forecasts}
-    found = error_roots(model, [cells[name] for name in names], drawn)
-    return {str(cell)[2:]: (str(root)[2:], code) for cell, (root, code) in found.items()}
+    result = error_roots(model, [cells[name] for name in names], drawn)
+    return {str(cell)[2:]: (str(root)[2:], code) for cell, (root, code) in result.items()}
 
 
 def draws(a, b):

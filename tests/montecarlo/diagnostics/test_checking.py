@@ -36,7 +36,7 @@ def checked(book):
 
 
 @pytest.mark.parametrize(
-    ("formula", "found", "holds"),
+    ("formula", "result", "holds"),
     [
         ("=A1<0.9", "TRUE", True),
         ("=A1>0.9", "FALSE", False),
@@ -54,10 +54,10 @@ def checked(book):
         ("=IFERROR(1/(A1-0.75)>0,TRUE)", "TRUE", True),
     ],
 )
-def test_what_a_check_holds_at_the_base_case(checked, formula, found, holds):
+def test_what_a_check_holds_at_the_base_case(checked, formula, result, holds):
     (check,) = base_checks(checked({**CELLS, "C1": formula}, {"plausible": "C1"}))
-    assert (check.found, check.holds) == (found, holds)
-    assert holds or check.fault == f"the base case fails the check 'plausible': S!C1 is {found}"
+    assert (check.content, check.holds) == (result, holds)
+    assert holds or check.fault == f"the base case fails the check 'plausible': S!C1 is {result}"
 
 
 @pytest.mark.parametrize("because", ["FALSE: a percentage?", "a percentage?", " false: a percentage? "])
@@ -157,7 +157,7 @@ def test_it_is_said_that_not_all_accepted_trials_were_looked_at(checked):
 def test_without_a_base_case_the_trials_are_looked_at_alone(checked):
     run = simulated(checked({**CELLS, "A1": None}, {"below": "C1"}), trials=2_000)
     check = run.checks[0]
-    assert (check.base.found, check.holds) == (None, None)
+    assert (check.base.content, check.holds) == (None, None)
     assert check.failed > 0
 
 

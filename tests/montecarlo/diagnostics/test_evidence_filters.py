@@ -22,9 +22,9 @@ def normal(book):
     return book(CELLS, OTHERS, FORECASTS, evidence={"EDR": READING})
 
 
-def close(found, truth):
+def close(result, truth):
     """Within four standard errors."""
-    return abs(found.value - truth) < 4 * found.error
+    return abs(result.value - truth) < 4 * result.error
 
 
 def test_a_normal_error_gives_the_known_posterior(normal):
@@ -105,9 +105,9 @@ def test_evidence_moves_no_draw_and_every_engine_keeps_the_same_trials(book, nor
 def test_what_keeps_no_trial_without_its_chance_is_told_at_the_base_case(normal):
     from xlmc.outputs.summary import base_case
 
-    found = base_case(simulated(normal, trials=200))
-    assert found.rejected_by == ()
-    assert found.forecasts == {"y": 0.0, "sum": 2.0}
+    result = base_case(simulated(normal, trials=200))
+    assert result.rejected_by == ()
+    assert result.forecasts == {"y": 0.0, "sum": 2.0}
 
 
 def test_a_reading_may_be_a_formula_but_not_one_of_an_assumption(book):

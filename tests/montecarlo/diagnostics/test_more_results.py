@@ -115,37 +115,37 @@ def shown(tmp_path_factory):
 
 
 def test_numbers_of_distributions(shown):
-    _, found = shown
+    _, result = shown
     for formula, exact in THEORY.items():
-        assert found[formula] == pytest.approx(exact, rel=1e-6), formula
+        assert result[formula] == pytest.approx(exact, rel=1e-6), formula
 
 
 def test_numbers_of_trials(shown):
-    run, found = shown
+    run, result = shown
     x, y = run["x"].values, run["y"].values
     for formula, of in OF_TRIALS.items():
-        assert found[formula] == pytest.approx(of(x, y), rel=1e-9, abs=1e-12), formula
+        assert result[formula] == pytest.approx(of(x, y), rel=1e-9, abs=1e-12), formula
 
 
 def test_the_interval_of_the_mean(shown):
     """Both ends are those of the statistic; about ±1.645 standard errors for so many trials."""
-    run, found = shown
-    low, high = found["RiskCIMean(A3,0.9)"], found["RiskCIMean(A3,0.9,FALSE)"]
+    run, result = shown
+    low, high = result["RiskCIMean(A3,0.9)"], result["RiskCIMean(A3,0.9,FALSE)"]
     error = run["x"].mean.error
     assert (run["x"].mean.value - low) / error == pytest.approx(1.645, abs=0.05)
     assert (high - run["x"].mean.value) / error == pytest.approx(1.645, abs=0.05)
 
 
 def test_an_assumption_by_its_name(shown):
-    _, found = shown
-    assert found["CB.GetAssumFN(A4,1)"] == "cb"
-    assert found["CB.GetAssumFN(A1,6)"] == found["CB.GetRunPrefsFN(3)"] == "#N/A"
+    _, result = shown
+    assert result["CB.GetAssumFN(A4,1)"] == "cb"
+    assert result["CB.GetAssumFN(A1,6)"] == result["CB.GetRunPrefsFN(3)"] == "#N/A"
 
 
 def test_what_cannot_be_shown_is_named(shown):
-    run, found = shown
+    run, result = shown
     for formula, reason in MISSING.items():
-        assert found[formula] == "#N/A", formula
+        assert result[formula] == "#N/A", formula
         assert any(why.startswith(reason) for why in run.shown_results.missing.values()), formula
     expected = " ".join(notice.message for notice in run.model.notices)
     assert "RiskSensitivity is not computed by xlmc" in expected

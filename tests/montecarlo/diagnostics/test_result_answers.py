@@ -57,9 +57,9 @@ def _interval(share):
     ],
 )
 def test_numbers_of_a_forecast(result, what, number, expected):
-    found = _statistic(result, SimpleNamespace(what=what, upper=True), number)
+    results = _statistic(result, SimpleNamespace(what=what, upper=True), number)
     tolerance = 0.01 if what == "confidence" else 1e-9
-    assert found == (None if expected is None else pytest.approx(expected(result.values), rel=tolerance))
+    assert results == (None if expected is None else pytest.approx(expected(result.values), rel=tolerance))
 
 
 @pytest.mark.parametrize(
@@ -79,8 +79,8 @@ def test_numbers_of_a_forecast(result, what, number, expected):
 )
 def test_a_part_of_the_values(result, lower, upper, percents, expected):
     limits = SimpleNamespace(lower=lower, upper=upper, percents=percents)
-    found = _between(result, limits, lambda tree: tree if isinstance(tree, float) else None)
+    results = _between(result, limits, lambda tree: tree if isinstance(tree, float) else None)
     if expected is None:
-        assert found is None
+        assert results is None
     else:
-        np.testing.assert_array_equal(found.values, result.values[expected(result.values)])
+        np.testing.assert_array_equal(results.values, result.values[expected(result.values)])

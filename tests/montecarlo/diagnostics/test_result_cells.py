@@ -113,8 +113,8 @@ def test_values(filled, saved):
         "B19": 100 * (1 - x.probability_above(10).value),
     }
     for address, value in expected.items():
-        found = saved["S"][address]
-        assert found == (value if isinstance(value, str | bool) else pytest.approx(value, rel=1e-12, abs=1e-12)), (
+        result = saved["S"][address]
+        assert result == (value if isinstance(value, str | bool) else pytest.approx(value, rel=1e-12, abs=1e-12)), (
             address
         )
     assert abs(saved["S"]["B1"] - 10) < 5 * 2 / math.sqrt(20_000)
@@ -204,12 +204,12 @@ OF_INPUTS = {
 def test_results_of_an_input_by_its_name_are_those_of_its_draws(tmp_path):
     """As drawn, shifted where the call says so, and without the rest of the formula."""
     run = simulated(load(build(tmp_path / "book.xlsx", OF_INPUTS)), trials=500)
-    found = {cell.a1: value for cell, value in run.shown_results.cells.items()}
+    result = {cell.a1: value for cell, value in run.shown_results.cells.items()}
     speed, share = run.inputs["Speed"], run.inputs["Share"] + 5
-    assert found["B1"] == pytest.approx(speed.mean(), rel=1e-12)
-    assert found["B2"] == pytest.approx(np.percentile(share, 90), rel=1e-12)
-    assert found["B3"] == pytest.approx(np.corrcoef(speed, run.forecasts["y"])[0, 1], rel=1e-12)
-    assert found["B4"] == ErrorCode.NA
+    assert result["B1"] == pytest.approx(speed.mean(), rel=1e-12)
+    assert result["B2"] == pytest.approx(np.percentile(share, 90), rel=1e-12)
+    assert result["B3"] == pytest.approx(np.corrcoef(speed, run.forecasts["y"])[0, 1], rel=1e-12)
+    assert result["B4"] == ErrorCode.NA
     assert "no forecast is called so: nothing is shown" in " ".join(str(notice) for notice in run.notices)
 
 
@@ -257,16 +257,16 @@ def test_what_a_result_is_asked_by_is_computed_too(tmp_path, saved):
             book.active[address] = formula
         book.save(path)
     run = simulated(load(path), trials=2000)
-    found = {cell.a1: value for cell, value in run.shown_results.cells.items()}
+    result = {cell.a1: value for cell, value in run.shown_results.cells.items()}
     y = run["S!A2"]
     mean, below = y.mean.value, float(np.mean(y.values <= y.values.mean()))
-    assert [found[each] for each in ("C1", "C2", "C3", "C6")] == pytest.approx([mean, below, below, below])
-    assert found["C4"] == pytest.approx(y.percentile(100 * (1 - below)).value)
-    assert found["C7"] == pytest.approx(y.values[y.values >= mean].mean())
-    assert found["C8"] == pytest.approx(y.percentile(90).value)
-    assert found["C9"] == pytest.approx(y.percentile(50).value)
-    assert found["C10"] == pytest.approx(y.percentile(90).value, rel=1e-4)
-    assert [found[each] for each in ("E1", "E2", "E3", "E4", "E5")] == [ErrorCode.NA] * 5
+    assert [result[each] for each in ("C1", "C2", "C3", "C6")] == pytest.approx([mean, below, below, below])
+    assert result["C4"] == pytest.approx(y.percentile(100 * (1 - below)).value)
+    assert result["C7"] == pytest.approx(y.values[y.values >= mean].mean())
+    assert result["C8"] == pytest.approx(y.percentile(90).value)
+    assert result["C9"] == pytest.approx(y.percentile(50).value)
+    assert result["C10"] == pytest.approx(y.percentile(90).value, rel=1e-4)
+    assert [result[each] for each in ("E1", "E2", "E3", "E4", "E5")] == [ErrorCode.NA] * 5
     warning = run.shown_results.warning
     assert "S!E1, S!E2 (asks for a result by a number that depends on itself)" in warning.replace("E1:E2", "E1, S!E2")
 
@@ -289,17 +289,17 @@ def test_results_of_further_simulations_are_those_of_the_scenarios(tmp_path):
     """Over the same random numbers, so that they differ by exactly twice what the table adds."""
     model = load(build(tmp_path / "book.xlsx", SIMULATIONS))
     plain = simulated(model, trials=500)
-    found = shown(plain, tmp_path / "out.xlsx")
-    assert [found[each] for each in ("B2", "B3", "B4", "B5")] == ["#N/A"] * 4
+    result = shown(plain, tmp_path / "out.xlsx")
+    assert [result[each] for each in ("B2", "B3", "B4", "B5")] == ["#N/A"] * 4
     assert "asks for simulation 2, and only simulate --scenarios runs further ones" in plain.shown_results.warning
     assert "RiskMean asks for simulation 4, and RiskSimtable has 3 values" in plain.shown_results.warning
     run = simulated(model, trials=500, scenarios=True)
     scenarios = scenario_answers(run)
     assert len(scenarios) == 3
-    found = shown(run, tmp_path / "out.xlsx")
+    result = shown(run, tmp_path / "out.xlsx")
     mean, below = run["S!A2"].mean.value, float(np.mean(run["S!A2"].values <= run["S!A2"].mean.value))
-    assert [found[f"B{row}"] for row in (1, 2, 3, 4)] == pytest.approx([mean, mean + 20, 40, below])
-    assert found["B5"] == "#N/A"
+    assert [result[f"B{row}"] for row in (1, 2, 3, 4)] == pytest.approx([mean, mean + 20, 40, below])
+    assert result["B5"] == "#N/A"
     assert [each.warnings for each in scenarios[1:]] == [[], []]
 
 
@@ -362,8 +362,8 @@ def shown(run, path):
         package_bytes({**run.model.workbook.parts, **filled_sheets(run.model.workbook, run.shown_results)})
     )
     book = openpyxl.load_workbook(path, data_only=True)
-    found = {cell.coordinate: cell.value for row in book["S"].iter_rows() for cell in row}
-    return found | {f"Other!{c.coordinate}": c.value for row in book["Other"].iter_rows() for c in row}
+    result = {cell.coordinate: cell.value for row in book["S"].iter_rows() for cell in row}
+    return result | {f"Other!{c.coordinate}": c.value for row in book["Other"].iter_rows() for c in row}
 
 
 MODEL = {"A1": ("=RiskNormal(5,1)", 5), "A2": ("=A1*2+RiskOutput()", 10)}
@@ -400,9 +400,9 @@ def test_what_xlmc_does_not_compute_shows_not_available_and_is_named(tmp_path):
     cells = {address: (f"={formula}", STALE) for address, formula in of.items()}
     cells |= {"C1": ("=A1+A2", 15), "D2": ("=RiskMean(A2)", STALE)}
     run = run_of(tmp_path / "book.xlsx", cells)
-    found = shown(run, tmp_path / "out.xlsx")
-    assert (found["C1"], found["D2"]) == (15, run["S!A2"].mean.value)
-    assert {address: found[address] for address in of} == dict.fromkeys(of, "#N/A")
+    result = shown(run, tmp_path / "out.xlsx")
+    assert (result["C1"], result["D2"]) == (15, run["S!A2"].mean.value)
+    assert {address: result[address] for address in of} == dict.fromkeys(of, "#N/A")
     assert {f"S!{address}" for address in of} == {str(each) for each in run.shown_results.missing if each.sheet == "S"}
     [warning] = run.warnings
     first = {reason: address for address, reason in reversed(list(zip(of, NOT_COMPUTED.values(), strict=True)))}
@@ -461,9 +461,9 @@ def test_whatever_depends_on_such_a_cell_shows_not_available(tmp_path, formula, 
         other.write_formula("A21", "=A20&A20", None, "stale")
         other.write_formula("A22", "=S!A2", None, 10)
     run = simulated(load(path), trials=200)
-    found = shown(run, tmp_path / "out.xlsx")
-    assert [found[address] for address in ("B1", "Other!A1", "Other!A20", "Other!A21")] == ["#N/A"] * 4
-    assert found["Other!A22"] == 10
+    result = shown(run, tmp_path / "out.xlsx")
+    assert [result[address] for address in ("B1", "Other!A1", "Other!A20", "Other!A21")] == ["#N/A"] * 4
+    assert result["Other!A22"] == 10
     [warning] = run.warnings
     assert warning.startswith(f"{len(run.shown_results.missing)} cells of the workbook depend on the run")
     assert "S!B1" in warning
@@ -495,8 +495,8 @@ def test_results_are_followed_wherever_they_go(tmp_path, formula):
         other.write_formula("A3", 'INDIRECT("S!A1")', None, 5)
     run = simulated(load(path), trials=200)
     assert run.warnings == []
-    found, mean = shown(run, tmp_path / "out.xlsx"), run["S!A2"].mean.value
-    assert (found["Other!A1"], found["Other!A2"], found["Other!A3"]) == (2 * mean, 2 * mean + 1, 5)
+    result, mean = shown(run, tmp_path / "out.xlsx"), run["S!A2"].mean.value
+    assert (result["Other!A1"], result["Other!A2"], result["Other!A3"]) == (2 * mean, 2 * mean + 1, 5)
 
 
 def test_a_name_that_draws_is_drawn(tmp_path):
@@ -526,17 +526,17 @@ def test_an_array_formula_that_cannot_be_computed(tmp_path):
         sheet.write_number("E2", STALE)
         sheet.write_formula("F1", "=SUM(E1:E2)", None, STALE)
     run = simulated(load(path), trials=200)
-    found = shown(run, tmp_path / "out.xlsx")
-    assert [found[address] for address in ("B1", "B2", "C1", "E1", "E2", "F1")] == ["#N/A"] * 6
-    assert found["D1"] == run["S!A2"].statistics.maximum.value
+    result = shown(run, tmp_path / "out.xlsx")
+    assert [result[address] for address in ("B1", "B2", "C1", "E1", "E2", "F1")] == ["#N/A"] * 6
+    assert result["D1"] == run["S!A2"].statistics.maximum.value
     assert "S!E1 (the formula spills into another area than when the file was saved)" in run.warnings[0]
 
 
 def test_a_draw_that_xlmc_does_not_know_keeps_its_base_case(tmp_path):
     """The run does not need it, and what Excel saved is the base case."""
     run = run_of(tmp_path / "book.xlsx", {"B1": ("=RiskLaplace(1,2)", 1.5), "B2": ("=B1*2", 3)})
-    found = shown(run, tmp_path / "out.xlsx")
-    assert (found["B1"], found["B2"], run.warnings) == (1.5, 3, [])
+    result = shown(run, tmp_path / "out.xlsx")
+    assert (result["B1"], result["B2"], run.warnings) == (1.5, 3, [])
 
 
 def test_the_fingerprint_of_the_original_stays(tmp_path):
@@ -598,8 +598,8 @@ VARYING = {
 def test_a_data_table_of_the_run_shows_not_available_and_is_named(tmp_path, made):
     path = with_table(tmp_path / "book.xlsx", **{"cells": {}, **made})
     run = simulated(load(path), trials=200)
-    found = shown(run, tmp_path / "out.xlsx")
-    assert [found[address] for address in ("D2", "D3", "E1")] == ["#N/A"] * 3
+    result = shown(run, tmp_path / "out.xlsx")
+    assert [result[address] for address in ("D2", "D3", "E1")] == ["#N/A"] * 3
     [warning] = run.warnings
     assert "S!D2:D3 (what-if data tables that depend on the run are not computed by xlmc)" in warning
     assert "S!E1 (depends on such a cell)" in warning
@@ -611,8 +611,8 @@ def test_a_data_table_of_the_run_shows_not_available_and_is_named(tmp_path, made
 
 def test_a_data_table_that_has_nothing_to_do_with_the_run_keeps_its_values(tmp_path):
     run = simulated(load(with_table(tmp_path / "book.xlsx", {}, "F1", ("=F1*2", 0))), trials=200)
-    found = shown(run, tmp_path / "out.xlsx")
-    assert [found[address] for address in ("D2", "D3", "E1")] == [77, 77, 154]
+    result = shown(run, tmp_path / "out.xlsx")
+    assert [result[address] for address in ("D2", "D3", "E1")] == [77, 77, 154]
     assert run.warnings == []
     [notice] = [notice for notice in run.model.notices if str(notice.where) == "S!D2:D3"]
     assert "kept at the values Excel last calculated" in notice.message
@@ -621,8 +621,8 @@ def test_a_data_table_that_has_nothing_to_do_with_the_run_keeps_its_values(tmp_p
 @pytest.mark.parametrize("made", VARYING.values(), ids=VARYING)
 def test_a_data_table_over_what_varies_keeps_its_base_case_like_every_other_cell(tmp_path, made):
     run = simulated(load(with_table(tmp_path / "book.xlsx", **{"cells": {}, **made})), trials=200)
-    found = shown(run, tmp_path / "out.xlsx")
-    assert [found[address] for address in ("D2", "D3", "E1")] == [77, 77, 154]
+    result = shown(run, tmp_path / "out.xlsx")
+    assert [result[address] for address in ("D2", "D3", "E1")] == [77, 77, 154]
     assert run.warnings == []
     [notice] = [notice for notice in run.model.notices if str(notice.where) == "S!D2:D3"]
     assert "kept at the values Excel last calculated for the base case; where a forecast" in notice.message
@@ -735,8 +735,8 @@ def test_percentiles_of_values_that_repeat_are_among_them(tmp_path):
             f"E{row}": (f"=RiskPercentileD({cell},1-{p})", 0),
         }
     run = simulated(load(build(tmp_path / "book.xlsx", formulas)), 3000)
-    found = {str(cell): value for cell, value in run.shown_results.values.items()}
+    result = {str(cell): value for cell, value in run.shown_results.values.items()}
     for row, (cell, p) in enumerate(asked.items(), start=1):
         x = np.sort(run[{"A1": "y", "A2": "z", "A3": "cut"}[cell]].values)
         expected = np.percentile(x, 100 * p) if cell == "A2" else x[math.ceil(p * x.size - 1e-9) - 1]
-        assert [found[f"S!{column}{row}"] for column in "BCE"] == pytest.approx([expected] * 3, rel=1e-12)
+        assert [result[f"S!{column}{row}"] for column in "BCE"] == pytest.approx([expected] * 3, rel=1e-12)

@@ -30,27 +30,27 @@ def model(book):
     return make
 
 
-def close(found, truth):
+def close(result, truth):
     """Within four standard errors."""
-    return abs(found.value - truth) < 4 * found.error
+    return abs(result.value - truth) < 4 * result.error
 
 
 def test_weights_give_the_known_posterior_and_effective_sample_size(model):
     """X ~ N(0, 1), a reading of 1 with a standard deviation of 0.5: mean 0.8, SD √0.2, mean weight √0.2·exp(-0.4)."""
     run = simulate(model(), trials=200_000, evidence="weights")
-    weighting, found = run.weighting, run["y"]
+    weighting, result = run.weighting, run["y"]
     assert run.settings.evidence == "weights"
     assert run.accepted == 200_000
     spread = math.sqrt(0.299776**2 * (1 / 0.420470 - 1) / 200_000)  # of the mean weight
     assert abs(weighting.mean - 0.299776) < 4 * spread
     assert weighting.effective / run.accepted == pytest.approx(0.420470, rel=0.01)
     assert weighting.largest == pytest.approx(1.0, abs=1e-6)
-    assert close(found.mean, 0.8)
-    assert close(found.standard_deviation, 0.447214)
-    assert close(found.percentile(95), 0.8 + 1.644854 * 0.447214)
+    assert close(result.mean, 0.8)
+    assert close(result.standard_deviation, 0.447214)
+    assert close(result.percentile(95), 0.8 + 1.644854 * 0.447214)
     known = math.sqrt((1 / 9 + (8 / 9 - 0.8) ** 2) / 0.420470 / 200_000)  # of w²(x - 0.8)², as w² is a bell, too
-    assert found.mean.error == pytest.approx(known, rel=0.02)
-    assert all(close(each.share, truth) for each, truth in zip(certainties(found), (0.245, 0.51, 0.245), strict=False))
+    assert result.mean.error == pytest.approx(known, rel=0.02)
+    assert all(close(each.share, truth) for each, truth in zip(certainties(result), (0.245, 0.51, 0.245), strict=False))
     (figure,) = figures_of(run)
     assert figure.bins.counted == round(weighting.effective)
     middle = float(
@@ -126,13 +126,13 @@ def test_without_a_normal_error_there_is_nothing_to_weight(book):
 
 def test_percentiles_beyond_which_few_effective_trials_lie_are_not_given(model):
     run = simulate(model(2.5, 0.5), trials=600, evidence="weights")
-    effective, found = run.weighting.effective, run["y"]
+    effective, result = run.weighting.effective, run["y"]
     assert 5 < effective < 200
     share = 100 * 10 / effective
-    assert math.isnan(found.percentile(max(0.0, share - 1)).value)
+    assert math.isnan(result.percentile(max(0.0, share - 1)).value)
     if share < 49:
-        assert not math.isnan(found.percentile(share + 1).value)
-    assert math.isnan(found.statistics.percentiles[0.0].value)
+        assert not math.isnan(result.percentile(share + 1).value)
+    assert math.isnan(result.statistics.percentiles[0.0].value)
     assert any("say as much as" in str(notice) for notice in run.notices_of_run)
     fewer = simulate(model(4.0, 0.1), trials=500, evidence="weights")
     assert math.isnan(fewer["y"].central()[0].value)
@@ -154,8 +154,8 @@ def test_a_weighted_sample_is_as_even_as_its_effective_size():
     assert sample.even.tolist() == sample.quantile(np.array([1, 3, 5]) / 6).tolist()
     assert Sample.of([1.0, 2.0], [0.0, 0.0]).even.size == 0
     assert Sample.of([3.0, 1.0]).even.tolist() == [1.0, 3.0]
-    found = histogram(sample, 1.0, 3.0)
-    assert found.counted == 3
+    result = histogram(sample, 1.0, 3.0)
+    assert result.counted == 3
 
 
 def test_sensitivities_of_weighted_trials_are_refused_in_python(model):
@@ -180,6 +180,6 @@ def test_sensitivities_of_weighted_trials_are_refused_in_python(model):
 )
 def test_rows_of_equal_weight(weights, most, effective, rows):
     """As many as (Σw)²/Σw², at equal steps of the weights added up."""
-    found = Weighting(np.array(weights), 0.5, 1.0)
-    assert found.effective == pytest.approx(effective)
-    assert found.even_rows(most).tolist() == rows
+    result = Weighting(np.array(weights), 0.5, 1.0)
+    assert result.effective == pytest.approx(effective)
+    assert result.even_rows(most).tolist() == rows

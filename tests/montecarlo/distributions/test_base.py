@@ -87,8 +87,8 @@ def test_a_member_gives_what_the_family_gives_and_checks_nothing(family, params)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(family, "valid", None)
         member = Member(family, params)
-        found = [getattr(member, name)(U) for name in names] + [member.mean(), member.variance()]
-    assert [each.tobytes() for each in found] == [each.tobytes() for each in expected]
+        result = [getattr(member, name)(U) for name in names] + [member.mean(), member.variance()]
+    assert [each.tobytes() for each in result] == [each.tobytes() for each in expected]
     assert member.support() == ends
 
 

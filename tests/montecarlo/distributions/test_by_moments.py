@@ -64,8 +64,10 @@ def test_a_weibull_is_found_from_the_moments_of_one():
     weibull = FAMILIES["Weibull"]
     for shape in (0.5, 1.0, 2.0, 8.0):
         mean, variance = (float(each(2.0, 3.0, shape)) for each in (weibull.mean, weibull.variance))
-        found = by_moments(weibull, ("location",), STD_DEV).member(location=2.0, mean=mean, std_dev=math.sqrt(variance))
-        assert found == pytest.approx((2.0, 3.0, shape), rel=1e-9)
+        result = by_moments(weibull, ("location",), STD_DEV).member(
+            location=2.0, mean=mean, std_dev=math.sqrt(variance)
+        )
+        assert result == pytest.approx((2.0, 3.0, shape), rel=1e-9)
 
 
 @pytest.mark.parametrize("name", ["Triangular", "Exponential", "Yes-No", "Johnson SU", "Custom"])
@@ -75,14 +77,14 @@ def test_what_two_moments_do_not_determine_is_refused(name):
 
 
 @pytest.mark.parametrize(
-    ("name", "numbers", "said"),
+    ("name", "numbers", "message"),
     [
         ("Gamma", {"location": 0.0, "mean": -1.0, "std_dev": 1.0}, "No Gamma has"),
         ("Logistic", {"mean": 1.0, "std_dev": 0.0}, "Std dev .0. must be above 0"),
         ("Cauchy", {"mean": 1.0, "std_dev": 1.0}, "No Cauchy has"),
     ],
 )
-def test_moments_that_no_member_has_are_told(name, numbers, said):
+def test_moments_that_no_member_has_are_told(name, numbers, message):
     fault = by_moments(FAMILIES[name], (), STD_DEV).check(**numbers)
     assert fault is not None
-    assert re.search(said, fault)
+    assert re.search(message, fault)

@@ -130,11 +130,11 @@ def members():
 def test_a_known_member(family, params, given_keys, p):
     x = family.ppf(np.array(p), *params)
     known = {key: value for key, value in zip(family.keys, params, strict=True) if key in given_keys}
-    found = match_percentiles(family, known, list(zip(p, x.tolist(), strict=True)))
-    assert found is not None
-    assert {key: value for key, value in zip(family.keys, found, strict=True) if key in known} == known
+    result = match_percentiles(family, known, list(zip(p, x.tolist(), strict=True)))
+    assert result is not None
+    assert {key: value for key, value in zip(family.keys, result, strict=True) if key in known} == known
     spread = family.ppf(0.75, *params) - family.ppf(0.25, *params)
-    np.testing.assert_allclose(family.ppf(np.array(p), *found), x, rtol=0, atol=1e-8 * spread)
+    np.testing.assert_allclose(family.ppf(np.array(p), *result), x, rtol=0, atol=1e-8 * spread)
 
 
 RISK_MEMBERS = [
@@ -164,9 +164,9 @@ def test_known_members_of_risk_families():
                 continue  # all missing, or the last one: in between nothing is done that `MEMBERS` do not show
             x = family.ppf(np.array(p), *params)
             known = {key: value for key, value in zip(family.keys, params, strict=True) if key in given_keys}
-            found = match_percentiles(family, known, list(zip(p, x.tolist(), strict=True)))
-            assert found is not None, (name, given_keys)
-            np.testing.assert_allclose(family.ppf(np.array(p), *found), x, rtol=0, atol=1e-8 * (x.max() - x.min() + 1))
+            result = match_percentiles(family, known, list(zip(p, x.tolist(), strict=True)))
+            assert result is not None, (name, given_keys)
+            np.testing.assert_allclose(family.ppf(np.array(p), *result), x, rtol=0, atol=1e-8 * (x.max() - x.min() + 1))
 
 
 def test_percentiles_that_lead_to_one_member_only():
@@ -187,11 +187,11 @@ def test_percentiles_that_lead_to_one_member_only():
 def test_any_member_by_three_percentiles(name, shape, log_scale, location):
     family, p = FAMILIES[name], np.array([0.1, 0.5, 0.9])
     x = family.ppf(p, location, np.exp(log_scale), shape)
-    found = match_percentiles(family, {}, list(zip(p.tolist(), x.tolist(), strict=True)))
+    result = match_percentiles(family, {}, list(zip(p.tolist(), x.tolist(), strict=True)))
     if x[2] - x[0] > 1e-4 * abs(location):  # else the percentiles have lost the digits that tell the shape
-        assert found is not None
-    if found is not None:
-        np.testing.assert_allclose(family.ppf(p, *found), x, rtol=0, atol=1e-8 * (x[2] - x[0]))
+        assert result is not None
+    if result is not None:
+        np.testing.assert_allclose(family.ppf(p, *result), x, rtol=0, atol=1e-8 * (x[2] - x[0]))
 
 
 @settings(max_examples=20)
@@ -203,9 +203,9 @@ def test_any_range_by_percentiles(name, given_keys, low, rise, fall):
     p = np.array(PERCENTILES[3 - len(given_keys)][0])
     x = family.ppf(p, **params)
     known = {key: params[key] for key in given_keys}
-    found = match_percentiles(family, known, list(zip(p.tolist(), x.tolist(), strict=True)))
-    assert found is not None
-    np.testing.assert_allclose(family.ppf(p, *found), x, rtol=0, atol=1e-8 * (rise + fall))
+    result = match_percentiles(family, known, list(zip(p.tolist(), x.tolist(), strict=True)))
+    assert result is not None
+    np.testing.assert_allclose(family.ppf(p, *result), x, rtol=0, atol=1e-8 * (rise + fall))
 
 
 @pytest.mark.parametrize(

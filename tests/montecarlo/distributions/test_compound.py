@@ -131,8 +131,8 @@ def test_a_draw_depends_on_its_uniform_alone():
 
 
 def test_trials_without_a_distribution_are_nan():
-    found = CLAIMS.ppf(uniforms(1, 3), np.array([5.0, -1.0, 5.0]), np.array([1.0, 1.0, np.nan]))
-    np.testing.assert_array_equal(np.isnan(found), [False, True, True])
+    result = CLAIMS.ppf(uniforms(1, 3), np.array([5.0, -1.0, 5.0]), np.array([1.0, 1.0, np.nan]))
+    np.testing.assert_array_equal(np.isnan(result), [False, True, True])
 
 
 def test_ranks_are_those_of_the_count_and_percentiles_those_of_the_sums():

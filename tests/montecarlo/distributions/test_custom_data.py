@@ -35,8 +35,8 @@ FORMS = {
 
 @pytest.mark.parametrize(("rows", "pieces"), FORMS.values(), ids=FORMS)
 def test_every_form(rows, pieces):
-    found = custom_pieces(rows)
-    for piece, expected in zip(found, pieces, strict=True):
+    result = custom_pieces(rows)
+    for piece, expected in zip(result, pieces, strict=True):
         for field in ("low", "high", "weight", "left", "right"):
             assert getattr(piece, field) == pytest.approx(getattr(expected, field), rel=1e-12, abs=1e-15), field
 
@@ -131,8 +131,8 @@ def test_bad_data(rows, options, message, places):
     with pytest.raises(DataError) as caught:
         custom_pieces(rows, **options)
     assert caught.value.message.startswith(message)
-    found = [(caught.value.row, caught.value.column), caught.value.also]
-    assert found[: len(places)] == places
+    result = [(caught.value.row, caught.value.column), caught.value.also]
+    assert result[: len(places)] == places
     assert caught.value.hint
     assert not caught.value.hint.endswith(".")
 

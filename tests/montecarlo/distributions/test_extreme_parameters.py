@@ -53,7 +53,7 @@ def test_what_is_not_refused_gives_finite_draws(name, data):
     if family is None:
         return
     values = st.lists(st.sampled_from(NUMBERS), min_size=len(family.keys), max_size=len(family.keys))
-    drawn = data.draw(values | values.map(sorted) | values.map(lambda found: [abs(each) for each in found]))
+    drawn = data.draw(values | values.map(sorted) | values.map(lambda result: [abs(each) for each in result]))
     lower, upper = sorted(data.draw(st.tuples(st.sampled_from(CUTOFFS), st.sampled_from(CUTOFFS))))
     with np.errstate(all="raise", under="ignore"):
         if family.fault(*drawn) is None:

@@ -41,8 +41,8 @@ def test_against_exact_sums(success, trials, population):
 def test_a_large_population_is_as_good_as_replacing():
     """Of 10^9, 100 are drawn: the binomial's probabilities to about 100/10^9."""
     k = np.arange(60.0)
-    found = HYPERGEOMETRIC.cdf(k, 3e8, 100, 1e9)
-    np.testing.assert_allclose(found, stats.binom(100, 0.3).cdf(k), rtol=1e-4, atol=1e-12)
+    result = HYPERGEOMETRIC.cdf(k, 3e8, 100, 1e9)
+    np.testing.assert_allclose(result, stats.binom(100, 0.3).cdf(k), rtol=1e-4, atol=1e-12)
 
 
 def test_half_of_a_thousand_million():

@@ -74,11 +74,11 @@ def test_the_member_with_these_moments_is_found(name):
     ((mean, deviation, skewness, kurtosis), quantiles), near = MEMBERS[name]
     params = mean, deviation, skewness, kurtosis
     assert JOHNSON.fault(*params) is None
-    found = JOHNSON.ppf(P, *params)
-    assert np.abs(found - quantiles).max() <= near * max(np.abs(quantiles - mean).max(), 1.0)
-    assert JOHNSON.isf(1 - P[1:-1], *params) == pytest.approx(found[1:-1], rel=1e-9)
-    assert JOHNSON.cdf(found, *params) == pytest.approx(P, rel=1e-6)
-    assert JOHNSON.sf(found, *params) == pytest.approx(1 - P, rel=1e-6)
+    result = JOHNSON.ppf(P, *params)
+    assert np.abs(result - quantiles).max() <= near * max(np.abs(quantiles - mean).max(), 1.0)
+    assert JOHNSON.isf(1 - P[1:-1], *params) == pytest.approx(result[1:-1], rel=1e-9)
+    assert JOHNSON.cdf(result, *params) == pytest.approx(P, rel=1e-6)
+    assert JOHNSON.sf(result, *params) == pytest.approx(1 - P, rel=1e-6)
     assert (JOHNSON.mean(*params), JOHNSON.variance(*params)) == pytest.approx((mean, deviation**2))
 
 
@@ -172,9 +172,9 @@ def test_what_no_member_has(params, key):
 
 def test_trials_of_other_moments_have_members_of_their_own():
     skewness, kurtosis = np.array([0.0, 0.5, -0.5, 0.5, 2.0]), np.array([3.0, 5.0, 5.0, 5.0, 5.0])
-    found = JOHNSON.ppf(np.full(5, 0.9), 10.0, 2.0, skewness, kurtosis)
+    result = JOHNSON.ppf(np.full(5, 0.9), 10.0, 2.0, skewness, kurtosis)
     alone = [JOHNSON.ppf(np.array([0.9]), 10.0, 2.0, s, k)[0] for s, k in zip(skewness, kurtosis, strict=True)]
-    np.testing.assert_array_equal(found, alone)
-    assert np.isnan(found).tolist() == [False, False, False, False, True]
-    assert found[0] == pytest.approx(10 + 2 * ndtri(0.9))
-    assert found[2] == pytest.approx(20 - JOHNSON.ppf(np.array([0.1]), 10.0, 2.0, 0.5, 5.0)[0])
+    np.testing.assert_array_equal(result, alone)
+    assert np.isnan(result).tolist() == [False, False, False, False, True]
+    assert result[0] == pytest.approx(10 + 2 * ndtri(0.9))
+    assert result[2] == pytest.approx(20 - JOHNSON.ppf(np.array([0.1]), 10.0, 2.0, 0.5, 5.0)[0])

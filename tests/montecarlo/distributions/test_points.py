@@ -50,10 +50,10 @@ def test_in_some_trials_only(name, params, point):
     wide = tuple(value + shift for value, shift in zip(params, (0.0, 1.0, 2.0), strict=False))
     wide = (1.0,) if name == "Poisson" else wide
     columns = [np.array([a, b, np.nan]) for a, b in zip(params, wide, strict=True)]
-    found = family.ppf(np.full(3, 0.7), *columns)
-    assert found[0] == point
-    assert found[1] == pytest.approx(float(family.ppf(0.7, *wide)), rel=1e-12)
-    assert np.isnan(found[2])
+    result = family.ppf(np.full(3, 0.7), *columns)
+    assert result[0] == point
+    assert result[1] == pytest.approx(float(family.ppf(0.7, *wide)), rel=1e-12)
+    assert np.isnan(result[2])
 
 
 def test_other_rules_still_hold():

@@ -149,8 +149,8 @@ def test_johnson_of_the_lognormal_line_is_lognormal():
     skewness, kurtosis = (w + 2) * np.sqrt(w - 1), w**4 + 2 * w**3 + 3 * w**2 - 3
     oracle = stats.lognorm(0.3)
     u = np.array([1e-6, 0.1, 0.5, 0.9, 1 - 1e-6])
-    found = FAMILIES["Johnson moments"].ppf(u, oracle.mean(), oracle.std(), skewness, kurtosis)
-    np.testing.assert_allclose(found, oracle.ppf(u), rtol=1e-9)
+    result = FAMILIES["Johnson moments"].ppf(u, oracle.mean(), oracle.std(), skewness, kurtosis)
+    np.testing.assert_allclose(result, oracle.ppf(u), rtol=1e-9)
     mirrored = FAMILIES["Johnson moments"].ppf(1 - u, -oracle.mean(), oracle.std(), -skewness, kurtosis)
     np.testing.assert_allclose(mirrored, -oracle.ppf(u), rtol=1e-7)
 
@@ -173,9 +173,9 @@ def test_parameters_that_vary_by_trial():
         family = FAMILIES[name]
         good = family.ppf(np.array([0.2, 0.7]), *params)
         columns = [np.array([value, value, np.nan]) for value in params]
-        found = family.ppf(np.array([0.2, 0.7, 0.5]), *columns)
-        np.testing.assert_allclose(found[:2], good, rtol=1e-12, err_msg=name)
-        assert np.isnan(found[2]), name
+        result = family.ppf(np.array([0.2, 0.7, 0.5]), *columns)
+        np.testing.assert_allclose(result[:2], good, rtol=1e-12, err_msg=name)
+        assert np.isnan(result[2]), name
 
 
 @pytest.mark.parametrize(("skewness", "kurtosis"), [(1.0, 1.9), (-1.0, 2.0), (0.0, 0.5)])

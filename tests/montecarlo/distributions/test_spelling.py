@@ -15,11 +15,11 @@ def test_different_names_stay_different():
 
 
 @pytest.mark.parametrize(
-    ("text", "found"),
+    ("text", "result"),
     [("Triangel", "Triangular"), ("unifrom", "Uniform"), ("nomal", "Normal"), ("xyz", None), ("", None)],
 )
-def test_nearest(text, found):
-    assert nearest(text, ["Uniform", "Normal", "Triangular", "Trapezoid"]) == found
+def test_nearest(text, result):
+    assert nearest(text, ["Uniform", "Normal", "Triangular", "Trapezoid"]) == result
 
 
 def test_nearest_can_be_strict():

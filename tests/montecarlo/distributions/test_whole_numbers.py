@@ -118,5 +118,5 @@ def test_a_right_guess_costs_two_questions():
 
 
 def test_a_trial_without_an_answer():
-    found = smallest(lambda k, _: k >= 3, np.array([np.nan, 1.0]), np.zeros(2), np.full(2, INF))
-    np.testing.assert_array_equal(found, [np.nan, 3])
+    result = smallest(lambda k, _: k >= 3, np.array([np.nan, 1.0]), np.zeros(2), np.full(2, INF))
+    np.testing.assert_array_equal(result, [np.nan, 3])

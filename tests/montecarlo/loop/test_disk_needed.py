@@ -40,10 +40,10 @@ def announced(model, *given, **more):
 
 @pytest.mark.parametrize("inputs", [0, 5_000, None])
 def test_what_is_said_is_what_is_written(model, small_memory, monkeypatch, inputs):
-    found = []
-    monkeypatch.setattr(DiskNeeded, "check", lambda needed: found.append(needed))
+    result = []
+    monkeypatch.setattr(DiskNeeded, "check", lambda needed: result.append(needed))
     sentences, run = announced(model, TRIALS, keep_inputs=inputs)
-    (needed,) = found
+    (needed,) = result
     assert needed.stored == pytest.approx(written(run), rel=0.03)
     assert needed.sorted == pytest.approx(2 * run.accepted, rel=0.03)
     assert needed.bytes == 8 * (needed.stored + needed.sorted)

@@ -60,13 +60,13 @@ def moves(model):
     yield []
 
 
-def assert_same(found, expected):
-    assert np.array_equal(found.trial_index, expected.trial_index)
+def assert_same(result, expected):
+    assert np.array_equal(result.trial_index, expected.trial_index)
     for name in ("rejected", "only", "together"):
-        assert getattr(found.tally, name).tolist() == getattr(expected.tally, name).tolist()
-    assert (found.tally.by_error, found.tally.errors) == (expected.tally.by_error, expected.tally.errors)
-    assert (found.faults, found.error_trials) == (expected.faults, expected.error_trials)
-    for mine, theirs in ((found.forecasts, expected.forecasts), (found.inputs, expected.inputs)):
+        assert getattr(result.tally, name).tolist() == getattr(expected.tally, name).tolist()
+    assert (result.tally.by_error, result.tally.errors) == (expected.tally.by_error, expected.tally.errors)
+    assert (result.faults, result.error_trials) == (expected.faults, expected.error_trials)
+    for mine, theirs in ((result.forecasts, expected.forecasts), (result.inputs, expected.inputs)):
         assert list(mine) == list(theirs)
         assert all(mine[name].tobytes() == theirs[name].tobytes() for name in mine)
 
@@ -154,9 +154,9 @@ def test_another_limit_makes_no_other_native_code(case):
     simulate(before, trials=TRIALS, seed=5, engine="jit")
     misses = machine()._compiled.cache_info().misses
     moved = applied(case, [Limits(TANGENT, {"at_most": 0.4321})])
-    found = simulate(moved, trials=TRIALS, seed=5, engine="jit")
+    result = simulate(moved, trials=TRIALS, seed=5, engine="jit")
     assert machine()._compiled.cache_info().misses == misses
-    assert found.accepted == simulate(moved, trials=TRIALS, seed=5).accepted
+    assert result.accepted == simulate(moved, trials=TRIALS, seed=5).accepted
 
 
 def test_a_block_says_its_draws_start_where_it_does(book):

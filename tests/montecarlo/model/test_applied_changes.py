@@ -100,12 +100,12 @@ def run(model, **more):
     return simulate(model, trials=3_000, seed=5, **more)
 
 
-def assert_same(found, expected):
-    assert found.block == expected.block
-    assert found.trial_index.size > 5
-    assert np.array_equal(found.trial_index, expected.trial_index)
-    assert found.tally.rejected.tolist() == expected.tally.rejected.tolist()
-    for mine, theirs in ((found.forecasts, expected.forecasts), (found.inputs, expected.inputs)):
+def assert_same(result, expected):
+    assert result.block == expected.block
+    assert result.trial_index.size > 5
+    assert np.array_equal(result.trial_index, expected.trial_index)
+    assert result.tally.rejected.tolist() == expected.tally.rejected.tolist()
+    for mine, theirs in ((result.forecasts, expected.forecasts), (result.inputs, expected.inputs)):
         assert list(mine) == list(theirs)
         assert all(mine[name].tobytes() == theirs[name].tobytes() for name in mine)
 
@@ -260,8 +260,8 @@ def test_a_draw_in_a_cell(tmp_path, subtests):
         "cut off": ([Numbers("u", {"upper_cutoff": 1.5})], 'RiskUniform(1,2,RiskName("u"),RiskTruncate(,1.5))'),
     }.items():
         with subtests.test(kind):
-            found = run(applied(plain, changes)).forecasts["answer"]
-            assert found.tobytes() == run(book(draw)).forecasts["answer"].tobytes()
+            result = run(applied(plain, changes)).forecasts["answer"]
+            assert result.tobytes() == run(book(draw)).forecasts["answer"].tobytes()
 
 
 @pytest.mark.parametrize(

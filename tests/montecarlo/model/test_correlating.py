@@ -38,8 +38,8 @@ def row(first, second, value):
     ],
 )
 def test_groups_of_correlated_assumptions(pairs, groups):
-    found = correlated_groups([row(*pair, 0.3) for pair in pairs], DRAWS)
-    assert [group.names for group in found] == groups
+    result = correlated_groups([row(*pair, 0.3) for pair in pairs], DRAWS)
+    assert [group.names for group in result] == groups
 
 
 def test_a_correlation_of_0_is_none():
@@ -54,8 +54,8 @@ CONTRADICTORY = {("A1", "A2"): 0.9, ("A3", "A2"): 0.9, ("A1", "A3"): -0.9}
 
 def test_contradictory_correlations_are_repaired_and_told(book):
     model = book(CELLS, GIVEN, {"x": "B1"}, correlations=CONTRADICTORY)
-    found = [drawn_correlation(model.groups, *pair) for pair in CONTRADICTORY]
-    assert found == pytest.approx([0.4826, 0.4826, -0.4826], abs=1e-4)
+    result = [drawn_correlation(model.groups, *pair) for pair in CONTRADICTORY]
+    assert result == pytest.approx([0.4826, 0.4826, -0.4826], abs=1e-4)
     [notice] = [each for each in model.notices if "correlations" in each.message]
     assert str(notice.where) == "Correlations!A1"
     assert "the largest change is 0.42: " in notice.message

@@ -111,9 +111,9 @@ def test_a_table_may_need_another_one(tmp_path):
     table = {**COLUMN, "B3": DataTableFormula(ref="B3:C5", r1="J1", dt2D=False, dtr=False)}
     table |= {"F3": 5, "F4": -7, "G2": "=Table!B4*J5+1", "J5": 1}
     table |= {"G3": DataTableFormula(ref="G3:G4", r1="J5", dt2D=False, dtr=False)}
-    found = xlmc.load(written(tmp_path / "a.xlsx", table, {"y": "=Table!G4"})).simulate(1_000, keep_inputs=None)
-    x, z = found.inputs["x"], found.inputs["z"]
-    assert np.allclose(found.forecasts["y"], (x**2.5 + z + 5) * 10 * -7 + 1, rtol=1e-13)
+    result = xlmc.load(written(tmp_path / "a.xlsx", table, {"y": "=Table!G4"})).simulate(1_000, keep_inputs=None)
+    x, z = result.inputs["x"], result.inputs["z"]
+    assert np.allclose(result.forecasts["y"], (x**2.5 + z + 5) * 10 * -7 + 1, rtol=1e-13)
 
 
 def test_an_error_in_the_table_loses_the_trial(tmp_path):
@@ -169,8 +169,8 @@ def test_a_table_follows_a_decision_that_no_assumption_reaches(constant):
     """A run with another J3 used what Excel had saved for the old one."""
     model = load(constant)
     for value in (2.0, 4.0):
-        found = model_with_values(model, {Cell("Table", 3, 10): value})
-        run = simulate(found, trials=200, seed=1)
+        result = model_with_values(model, {Cell("Table", 3, 10): value})
+        run = simulate(result, trials=200, seed=1)
         assert np.allclose(run.forecasts["y"], run.inputs["x"] + 2.5 * value, rtol=1e-14), value
 
 
@@ -187,8 +187,8 @@ def test_what_another_program_left_in_a_table_is_not_used(constant, tmp_path):
 
 
 def test_goal_seek_goes_through_a_table(constant):
-    found = xlmc.seek(constant, "Table!D3", 20.5, "Table!J3")
-    assert found.values == pytest.approx([8.0], rel=1e-12)
+    result = xlmc.seek(constant, "Table!D3", 20.5, "Table!J3")
+    assert result.values == pytest.approx([8.0], rel=1e-12)
 
 
 def test_a_cell_of_a_table_is_no_constant(tmp_path):

@@ -369,8 +369,8 @@ def test_numbers_of_other_types_are_taken_as_floats(read_book, number):
     speed, *others = read_book.assumptions
     same = replace(speed, given={"low": number(38), "high": number(42)})
     definitions = replace(read_book.definitions, assumptions=(same, *others))
-    found = simulated(CompiledModel(read_book.workbook, definitions, read_book.path), 100, seed=1)
-    assert found.inputs["speed"].tolist() == simulated(read_book, 100, seed=1).inputs["speed"].tolist()
+    result = simulated(CompiledModel(read_book.workbook, definitions, read_book.path), 100, seed=1)
+    assert result.inputs["speed"].tolist() == simulated(read_book, 100, seed=1).inputs["speed"].tolist()
 
 
 @pytest.mark.parametrize(

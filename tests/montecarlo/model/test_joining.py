@@ -208,12 +208,12 @@ def test_the_case_of_the_paper_with_a_skid_before_it(tmp_path):
     )
     length = named_cells(read_workbook(skid))["d_1"]
     run = simulated(applied(model, [Typed(length, 60.0)]), 400_000, seed=1)
-    found = run.results["Speed at the beginning of the skid"]
+    result = run.results["Speed at the beginning of the skid"]
     speeds = run.forecasts["Speed at the beginning of the skid"]
     above = np.mean(speeds > 48)
-    assert abs(found.mean.value - 49.08) < 4 * found.mean.error + 0.005
-    assert abs(found.standard_deviation.value - 2.76) < 4 * found.standard_deviation.error + 0.005
+    assert abs(result.mean.value - 49.08) < 4 * result.mean.error + 0.005
+    assert abs(result.standard_deviation.value - 2.76) < 4 * result.standard_deviation.error + 0.005
     assert abs(above - 0.59) < 4 * np.sqrt(0.59 * 0.41 / run.accepted) + 0.005
-    low, high = found.central()
+    low, high = result.central()
     for number, expected in ((low, 46.75), (high, 51.19)):
         assert abs(number.value - expected) < 4 * number.error + 0.005

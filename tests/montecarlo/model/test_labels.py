@@ -38,30 +38,30 @@ def book(tmp_path):
 def test_texts_of_the_tables_are_calculated_and_nothing_else(book):
     before = book()
     after = calculate_labels(before)
-    found = {(row, column): content.value for (row, column), content in after.sheets["S"].cells.items() if row > 1}
-    assert {spot: value for spot, value in found.items() if isinstance(value, str)} == {
+    result = {(row, column): content.value for (row, column), content in after.sheets["S"].cells.items() if row > 1}
+    assert {spot: value for spot, value in result.items() if isinstance(value, str)} == {
         (2, 1): "Ford weight",
         (2, 5): "scale",
         (3, 1): "plain",
         (4, 1): "Ford weight",
     }
-    assert found[2, 3] is None  # a number is not a label: each run computes it
-    assert found[3, 5] is found[4, 5] is found[4, 6] is None
+    assert result[2, 3] is None  # a number is not a label: each run computes it
+    assert result[3, 5] is result[4, 5] is result[4, 6] is None
     assert list(after.sheets) == list(before.sheets)
     assert after.content(Cell("S", 2, 1)).formula == before.content(Cell("S", 2, 1)).formula
     assert (after.data, after.sha256) == (before.data, before.sha256)
 
 
-@pytest.mark.parametrize(("table", "said"), [("xlmc_forecasts", None), ("xlmc_settings", "high")])
-def test_a_forecast_in_the_table_itself_is_not_calculated_to_read_it(tmp_path, table, said):
+@pytest.mark.parametrize(("table", "message"), [("xlmc_forecasts", None), ("xlmc_settings", "high")])
+def test_a_forecast_in_the_table_itself_is_not_calculated_to_read_it(tmp_path, table, message):
     """It may need every formula of the workbook; in settings the column says what is meant."""
     made = openpyxl.Workbook()
     made.active.append(("Name", "Value"))
     made.active.append(("speed", '=IF(1>0,"high","low")'))
     made.active.add_table(Table(displayName=table, ref="A1:B2"))
     made.save(tmp_path / "book.xlsx")
-    found = calculate_labels(read_workbook(tmp_path / "book.xlsx"))
-    assert found.content(Cell("Sheet", 2, 2)).value == said
+    result = calculate_labels(read_workbook(tmp_path / "book.xlsx"))
+    assert result.content(Cell("Sheet", 2, 2)).value == message
 
 
 def test_a_book_without_anything_to_calculate_stays_itself(book):
@@ -93,9 +93,9 @@ def test_values_that_may_be_older_than_their_formulas_are_calculated_again(workb
         assert after is before
         return
     saved = {at: content.value for at, content in before.sheets["S"].cells.items()}
-    found = {at: content.value for at, content in after.sheets["S"].cells.items()}
+    result = {at: content.value for at, content in after.sheets["S"].cells.items()}
     changed = {(2, 1): "Speed 8", (2, 3): 4.0, (2, 5): True, (5, 2): 8000.0}
-    assert found == saved | changed
+    assert result == saved | changed
     text = {
         str(notice.where): notice.message.partition(", which is used: let Excel calculate")[0]
         for notice in after.notices

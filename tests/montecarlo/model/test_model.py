@@ -40,13 +40,13 @@ def test_what_offset_leads_to_keeps_the_order_of_the_first_stages(book):
 
 
 def test_the_workbook_as_a_function(model):
-    found = model.function({"mass": [4.0, 9.0, -1.0], "Speed ": 0.5})
-    assert {name: values.shape for name, values in found.items()} == dict.fromkeys(FORECASTS, (3,))
-    assert found["Sum"].tolist() == [4.5, 9.5, -0.5]
-    assert found["Root"][:2].tolist() == [2.0, 3.0]
-    assert np.isnan(found["Root"][2])
-    assert np.isnan(found["Text"][:2]).all()
-    assert found["Text"][2] == -1.0
+    result = model.function({"mass": [4.0, 9.0, -1.0], "Speed ": 0.5})
+    assert {name: values.shape for name, values in result.items()} == dict.fromkeys(FORECASTS, (3,))
+    assert result["Sum"].tolist() == [4.5, 9.5, -0.5]
+    assert result["Root"][:2].tolist() == [2.0, 3.0]
+    assert np.isnan(result["Root"][2])
+    assert np.isnan(result["Text"][:2]).all()
+    assert result["Text"][2] == -1.0
 
 
 def test_filters_are_not_asked(model):
@@ -65,16 +65,16 @@ def test_filters_are_not_asked(model):
     ],
 )
 def test_shapes_of_the_function(model, mass, speed, n):
-    found = model.function({"mass": mass, "speed": speed})
-    assert {values.shape for values in found.values()} == {(n,)}
-    assert np.array_equal(found["Sum"], np.broadcast_to(np.add(mass, speed), (n,)))
+    result = model.function({"mass": mass, "speed": speed})
+    assert {values.shape for values in result.values()} == {(n,)}
+    assert np.array_equal(result["Sum"], np.broadcast_to(np.add(mass, speed), (n,)))
 
 
 @pytest.mark.parametrize("bad", [np.nan, np.inf, -np.inf])
 def test_inputs_that_are_no_numbers_are_errors(model, bad):
-    found = model.function({"mass": [bad, 4.0], "speed": 1.0})
-    assert np.isnan(found["Sum"][0])
-    assert found["Sum"][1] == 5.0
+    result = model.function({"mass": [bad, 4.0], "speed": 1.0})
+    assert np.isnan(result["Sum"][0])
+    assert result["Sum"][1] == 5.0
 
 
 def test_results_are_the_callers_own(model):

@@ -115,11 +115,11 @@ def test_a_mean_that_does_not_exist_is_told(book, family, heavy):
     ],
 )
 def test_sources_that_a_template_left(texts, message):
-    found = example_notices((repr("abcdef"[i]), at(i + 1), text) for i, text in enumerate(texts))
+    result = example_notices((repr("abcdef"[i]), at(i + 1), text) for i, text in enumerate(texts))
     if message is None:
-        assert found == []
+        assert result == []
         return
-    (notice,) = found
+    (notice,) = result
     assert message in str(notice)
     assert notice.where == at(next(i for i, text in enumerate(texts) if text.strip().lower().startswith("example")) + 1)
 

@@ -29,10 +29,10 @@ def names(assumptions):
 
 
 def test_only_assumptions_that_something_needs_are_drawn(scene):
-    found = scene({name: {"cell": name, **UNIT} for name in ("A1", "A2", "A3", "A4")}, {"x": "B1"})
-    assert list(found.live) == ["A1", "A2"]
-    assert names(found.idle) == ["A3", "A4"]
-    assert [str(notice) for notice in found.notices()] == [
+    result = scene({name: {"cell": name, **UNIT} for name in ("A1", "A2", "A3", "A4")}, {"x": "B1"})
+    assert list(result.live) == ["A1", "A2"]
+    assert names(result.idle) == ["A3", "A4"]
+    assert [str(notice) for notice in result.notices()] == [
         "S!A3: No forecast or filter needs the assumption 'A3'",
         "S!A4: No forecast or filter needs the assumption 'A4'",
     ]
@@ -45,13 +45,13 @@ def test_filters_need_cells_too(scene):
 
 
 def test_frozen_assumptions_are_not_drawn(scene):
-    found = scene({"a": {"cell": "A1", "frozen": True, **UNIT}, "b": {"cell": "A2", **UNIT}}, {"x": "B1"})
-    assert list(found.live) == ["b"]
-    assert found.idle == ()
+    result = scene({"a": {"cell": "A1", "frozen": True, **UNIT}, "b": {"cell": "A2", **UNIT}}, {"x": "B1"})
+    assert list(result.live) == ["b"]
+    assert result.idle == ()
     assert (
         scene({"a": {"cell": "A9", "frozen": True, **UNIT}, "b": {"cell": "A2", **UNIT}}, {"x": "B1"}).notices() == ()
     )
-    assert Cell("S", 1, 1) in found.graph.reached
+    assert Cell("S", 1, 1) in result.graph.reached
 
 
 def test_parameters_need_cells_and_these_need_assumptions(scene):
@@ -62,9 +62,9 @@ def test_parameters_need_cells_and_these_need_assumptions(scene):
         "idle": {"cell": "A9", "low": "A8", "high": 1},
         "never": {"cell": "A8", **UNIT},
     }
-    found = scene(assumptions, {"x": "A1"})
-    assert [list(stage) for stage in found.stages] == [["first", "also"], ["last"]]
-    assert names(found.idle) == ["idle", "never"]
+    result = scene(assumptions, {"x": "A1"})
+    assert [list(stage) for stage in result.stages] == [["first", "also"], ["last"]]
+    assert names(result.idle) == ["idle", "never"]
 
 
 def test_stages_run_one_after_another(scene):
@@ -78,8 +78,8 @@ def test_stages_run_one_after_another(scene):
 
 def test_a_parameter_of_known_cells_waits_for_nothing(scene):
     assumptions = {"a": {"cell": "A1", "low": 0, "high": "D1"}, "b": {"cell": "A2", **UNIT}}
-    found = scene(assumptions, {"x": "B1"}, cells=CELLS | {"D1": "=D2*2", "D2": 5.0})
-    assert [list(stage) for stage in found.stages] == [["a", "b"]]
+    result = scene(assumptions, {"x": "B1"}, cells=CELLS | {"D1": "=D2*2", "D2": 5.0})
+    assert [list(stage) for stage in result.stages] == [["a", "b"]]
 
 
 @pytest.mark.parametrize(
@@ -152,8 +152,8 @@ def test_what_a_filter_asks(limits, asked):
 )
 def test_trials_are_kept_by_chance(bell, chance, asked):
     cell = Cell("S", 1, 2)
-    found = formula_text(accepted_by_chance(bell, cell, chance))
-    assert found.replace(formula_text(bell.tree_of_chance(cell)), "CHANCE") == asked
+    result = formula_text(accepted_by_chance(bell, cell, chance))
+    assert result.replace(formula_text(bell.tree_of_chance(cell)), "CHANCE") == asked
 
 
 def test_a_run_draws_as_many_calls_in_cells_as_a_report_can_take():

@@ -39,17 +39,17 @@ def run(model):
 
 
 def test_every_trial_is_what_the_function_gives_for_its_draws(run):
-    found = skid(**run.inputs)
-    assert np.array_equal(run.forecasts["Speed"], found["Speed"])
-    assert np.array_equal(run.forecasts["Energy"], found["Energy"])
+    result = skid(**run.inputs)
+    assert np.array_equal(run.forecasts["Speed"], result["Speed"])
+    assert np.array_equal(run.forecasts["Energy"], result["Energy"])
 
 
 def test_filters_keep_exactly_what_they_say(run):
     assert (run.inputs["distance"] > 24).all()
     assert (run.forecasts["Speed"] > 62).all()
     draws = run.prior
-    found = skid(**draws)
-    assert run.accepted == int((found["Possible"] & (found["Speed"] > 62)).sum())
+    result = skid(**draws)
+    assert run.accepted == int((result["Possible"] & (result["Speed"] > 62)).sum())
 
 
 def test_answers_agree_with_the_textbook():

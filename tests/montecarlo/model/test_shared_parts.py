@@ -11,7 +11,7 @@ from xlmc.montecarlo.model.shared_parts import asks_for_the_same, hull
 
 
 @pytest.mark.parametrize(
-    ("first", "second", "found"),
+    ("first", "second", "result"),
     [
         ((1.0, 3.0), (1.5, 2.0), (1.0, 3.0)),  # it holds already
         ((1.0, 3.0), (1.0, 3.0), (1.0, 3.0)),
@@ -25,8 +25,8 @@ from xlmc.montecarlo.model.shared_parts import asks_for_the_same, hull
         ((-1.0, 0.0), (-2.0, 0.0), (-4.0, 0.0)),
     ],
 )
-def test_a_range_that_was_moved_is_given_room(first, second, found):
-    assert hull({"a": first, "b": (0.0, 1.0)}, {"a": second, "c": (0.0, 1.0)}) == {"a": found}
+def test_a_range_that_was_moved_is_given_room(first, second, result):
+    assert hull({"a": first, "b": (0.0, 1.0)}, {"a": second, "c": (0.0, 1.0)}) == {"a": result}
 
 
 CELLS = {"A1": 1.0, "A2": 2.0, "A3": 0.5, "B1": "=A1+A2", "B2": "=A1*A2"}
@@ -39,8 +39,8 @@ def own(book):
 
 
 def changed(definitions, name, **new):
-    found = [replace(each, **new) if each.name == name else each for each in definitions.assumptions]
-    return replace(definitions, assumptions=tuple(found))
+    result = [replace(each, **new) if each.name == name else each for each in definitions.assumptions]
+    return replace(definitions, assumptions=tuple(result))
 
 
 CHANGES = {

@@ -104,7 +104,7 @@ def test_native_code_finds_the_same_bits(book, monkeypatch, formula, low, high, 
     numpy, native = (model.simulate(20_000, seed=2, engine=engine) for engine in ("numpy", "jit"))
     assert np.array_equal(numpy.forecasts["x"], native.forecasts["x"], equal_nan=True)
     assert numpy.faults == native.faults
-    assert np.mean(np.concatenate([found for _, found in solved or [(None, [False])]])) >= by_loop
+    assert np.mean(np.concatenate([result for _, result in solved or [(None, [False])]])) >= by_loop
 
 
 @pytest.mark.parametrize(
@@ -219,8 +219,8 @@ def test_the_slow_engine_says_that_it_cannot(book):
 def test_studies_and_records_take_the_cell_as_a_formula(book, tmp_path):
     model = xlmc.load(book())
     run = model.simulate(20_000)
-    found = xlmc.sensitivities(run)
-    assert {each.assumption for each in found.forecasts[1].influences} == {"a", "c"}
+    result = xlmc.sensitivities(run)
+    assert {each.assumption for each in result.forecasts[1].influences} == {"a", "c"}
     held = xlmc.screen(model, trials=5_000, tolerance="0.001")
     assert held.joint is None
     changed = model.with_(a=2.0).simulate(1_000, keep_inputs=None)

@@ -30,14 +30,14 @@ def bench():
 def test_intervals_hold_the_truth(bench):
     """6 intervals: fewer hits than 95 % coverage has once in 1,000 times, were all independent, fail."""
     problem = importlib.import_module("rare_problems").corner(1e-7, narrowed=3, count=5)
-    found = bench.one_run(problem.distance, problem.dimensions, 5000, 1000)
-    points = found.resampled.points
+    result = bench.one_run(problem.distance, problem.dimensions, 5000, 1000)
+    points = result.resampled.points
     assert np.all(problem.distance(points) == 0.0)
-    assert 0.97 * 1000 <= found.resampled.size <= 1000
-    hits = sum(bench.covered(bench.estimates(found, problem.forecast(points)), problem.truth))
+    assert 0.97 * 1000 <= result.resampled.size <= 1000
+    hits = sum(bench.covered(bench.estimates(result, problem.forecast(points)), problem.truth))
     assert bdtr(hits, 6, 0.95) > 1e-3
     assert problem.truth[0] <= 1e-6
-    assert found.evaluations < 1000 / problem.truth[0] / 50
+    assert result.evaluations < 1000 / problem.truth[0] / 50
 
 
 def shifted(mean):
@@ -47,9 +47,9 @@ def shifted(mean):
 
 def test_a_trial_heavier_than_any_known_is_learnt_from(random):
     """The proposal lies at 4, most of the region at 2 to 3: its first trials there weigh far more than was known."""
-    found = resample(lambda z: z[:, 0] > 2.0, shifted(4.0), -9.0, -math.inf, 10_000, 10**6, random)
-    assert found.surprise is not None
-    assert found.surprise.points.min() < 3.0
+    result = resample(lambda z: z[:, 0] > 2.0, shifted(4.0), -9.0, -math.inf, 10_000, 10**6, random)
+    assert result.surprise is not None
+    assert result.surprise.points.min() < 3.0
     again = resample(lambda z: z[:, 0] > 2.0, shifted(2.5), -2.0, -math.inf, 500, 10**6, random)
     assert again.surprise is None
     assert len(again.points) == 500
@@ -63,9 +63,9 @@ def test_too_many_for_the_limit_are_not_begun():
         return np.maximum(0.0, 3.0 - z[:, 0])
 
     random = np.random.default_rng(3)
-    found = find(distance, lambda z: distance(z) == 0.0, 1, 10**9, 10**7, random, random)
-    assert found.resampled is None
-    assert found.learned.best is not None
+    result = find(distance, lambda z: distance(z) == 0.0, 1, 10**9, 10**7, random, random)
+    assert result.resampled is None
+    assert result.learned.best is not None
 
 
 def wavy(half):
@@ -84,12 +84,12 @@ def test_a_layer_of_which_few_proposals_are_part_is_described_all_the_same():
     truth = 2 * half * weights @ np.exp(-0.5 * np.sin(3.0 * nodes) ** 2) / (2 * np.pi)
     distance = wavy(half)
     random = [np.random.default_rng((11, each)) for each in (0, 1)]
-    found = find(distance, lambda z: distance(z) == 0.0, 4, 100, 10**8, *random)
-    assert found.used.trials > learning._TRIALS
-    assert np.all(distance(found.resampled.points) == 0.0)
-    acceptance = found.resampled.acceptance
+    result = find(distance, lambda z: distance(z) == 0.0, 4, 100, 10**8, *random)
+    assert result.used.trials > learning._TRIALS
+    assert np.all(distance(result.resampled.points) == 0.0)
+    acceptance = result.resampled.acceptance
     assert abs(acceptance.value - truth) < 4.5 * acceptance.error
-    assert found.resampled.fresh <= found.resampled.proposals // 2
+    assert result.resampled.fresh <= result.resampled.proposals // 2
 
 
 def test_learning_keeps_to_the_limit():
@@ -97,8 +97,8 @@ def test_learning_keeps_to_the_limit():
     distance = wavy(1e-6)
     random = [np.random.default_rng((12, each)) for each in (0, 1)]
     message = []
-    found = find(distance, lambda z: distance(z) == 0.0, 4, 100, 1_000_000, *random, message.append)
-    assert found.evaluations <= 1_000_000 + 32_768
+    result = find(distance, lambda z: distance(z) == 0.0, 4, 100, 1_000_000, *random, message.append)
+    assert result.evaluations <= 1_000_000 + 32_768
     assert message == sorted(message)
 
 
@@ -106,10 +106,10 @@ def test_acceptance_is_more_than_nothing_where_few_trials_are_wanted():
     """Some 1.3 of 32,768 are accepted: as many draws again may have none, so there are more, a million at most."""
     for seed in range(2):
         random = np.random.default_rng((13, seed))
-        found = resample(
+        result = resample(
             lambda z: (z[:, 0] > 2.5) & (z[:, 0] < 2.5 + 6.4e-5), shifted(2.5), -2.7, -math.inf, 2, 10**8, random
         )
-        assert len(found.points) == 2
-        assert found.proposals - found.fresh < found.fresh <= 1 << 20
-        assert found.acceptance.value > 0.0
-        assert found.acceptance.interval is not None
+        assert len(result.points) == 2
+        assert result.proposals - result.fresh < result.fresh <= 1 << 20
+        assert result.acceptance.value > 0.0
+        assert result.acceptance.interval is not None

@@ -43,12 +43,12 @@ OF_TWO = {
 ENDS = st.one_of(st.sampled_from([0.0, 1.0, -1.0, math.inf, -math.inf]), st.floats(-4.0, 4.0))
 
 
-def check(found: Spans, values, low, high):
+def check(spans: Spans, values, low, high):
     """Arguments are in what was found where their values are within the bounds; at the ends rounding decides."""
     near = np.isclose(values, low, rtol=1e-9, atol=1e-9) | np.isclose(values, high, rtol=1e-9, atol=1e-9)
     tried = np.isfinite(values) & ~near
     wanted = (low <= values) & (values <= high)
-    assert np.array_equal(found.contain(ARGUMENTS)[tried], wanted[tried])
+    assert np.array_equal(spans.contain(ARGUMENTS)[tried], wanted[tried])
 
 
 def test_every_function_is_tried():
@@ -98,9 +98,9 @@ def test_ratios_of_lines(ends, of):
 
 def test_pieces_are_in_order_and_apart():
     ends = [([4.0], [5.0]), ([1.0], [2.0]), ([1.5], [3.0]), ([9.0], [8.0]), ([math.nan], [1.0])]
-    found = union_of_pairs([(np.array(low), np.array(high)) for low, high in ends])
-    assert found.low.T.tolist() == [[1.0, 4.0]]
-    assert found.high.T.tolist() == [[3.0, 5.0]]
+    result = union_of_pairs([(np.array(low), np.array(high)) for low, high in ends])
+    assert result.low.T.tolist() == [[1.0, 4.0]]
+    assert result.high.T.tolist() == [[3.0, 5.0]]
 
 
 def test_sets_are_met_joined_and_chosen():

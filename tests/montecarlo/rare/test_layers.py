@@ -39,8 +39,8 @@ def ground(book):
     return make
 
 
-def solved(found):
-    return [layer.name for layer in found.layers] if isinstance(found, Layered) else []
+def solved(result):
+    return [layer.name for layer in result.layers] if isinstance(result, Layered) else []
 
 
 SOLVED = [
@@ -98,13 +98,13 @@ def test_correlated_assumptions_and_those_with_parameters_that_vary_are_not_solv
 def test_points_stand_for_the_trials_they_are_made_of(ground):
     varying = {**GIVEN, "b": {"cell": "A2", "distribution": "Normal", "mean": "A3", "std_dev": 1}}
     filters = {"f": {"cell": "B4", **THIN}, "g": {"cell": "A4", "at_least": 0}, "h": "B5"}
-    found = ground(filters, {("d", "c"): 0.5}, formulas=["=A1-A2^2/4+A3", "=OR(A1<0,A2>1)"], given=varying)
-    uniforms = np.random.default_rng(5).random((5_000, found.dimensions))
-    points = found.points(uniforms)
-    assert found.uniforms(points) == pytest.approx(uniforms, abs=1e-12)
-    assert np.array_equal(found.accepts(points), found._function.accepts_at(uniforms))
-    distances = found.distance(points)
-    assert np.array_equal(distances == 0.0, found.accepts(points))
+    result = ground(filters, {("d", "c"): 0.5}, formulas=["=A1-A2^2/4+A3", "=OR(A1<0,A2>1)"], given=varying)
+    uniforms = np.random.default_rng(5).random((5_000, result.dimensions))
+    points = result.points(uniforms)
+    assert result.uniforms(points) == pytest.approx(uniforms, abs=1e-12)
+    assert np.array_equal(result.accepts(points), result._function.accepts_at(uniforms))
+    distances = result.distance(points)
+    assert np.array_equal(distances == 0.0, result.accepts(points))
     assert np.isfinite(distances).all()
 
 
@@ -135,8 +135,8 @@ def test_the_answer_of_two_sheets_beside_another_filter_is_the_truth(book):
     )
     true = 1e-6 * mass / 1.5
     assert abs(run.acceptance.value - true) < 4.5 * run.acceptance.error
-    found = run["z"].statistics.mean
-    assert abs(found.value - mean) < 4.5 * found.error
+    result = run["z"].statistics.mean
+    assert abs(result.value - mean) < 4.5 * result.error
     upper = of_upper / mass
     assert abs(np.mean(run.forecasts["x"] > 0) - upper) < 4.5 * math.sqrt(upper * (1 - upper) / 3_000)
     assert run.acceptance.error < 0.01 * run.acceptance.value

@@ -74,28 +74,28 @@ def test_a_farther_trial_is_farther(book, random):
     model = book({"A1": 1.0}, {"a": GIVEN["a"]}, {"x": "A1"}, {"f": {"cell": "A1", "at_least": 0.999}})
     function = LimitStateFunction(model, random)
     points = np.array([[-2.0], [-1.0], [0.0], [2.0], [4.0]])
-    found = function.distance(points)
-    assert list(found) == sorted(found, reverse=True)
-    assert found[-1] == 0.0
-    assert found[2] == pytest.approx(1.0, rel=0.05)  # the median shortfall is the unit
+    result = function.distance(points)
+    assert list(result) == sorted(result, reverse=True)
+    assert result[-1] == 0.0
+    assert result[2] == pytest.approx(1.0, rel=0.05)  # the median shortfall is the unit
 
 
 def test_an_error_is_infinitely_far(book, random):
     cells = {"A1": 1.0, "B1": "=SQRT(A1-0.5)"}
     model = book(cells, {"a": GIVEN["a"]}, {"x": "A1"}, {"f": {"cell": "B1", "at_least": 0.5}})
     function = LimitStateFunction(model, random)
-    found = function.distance(np.array([[-1.0], [0.5], [2.0]]))
-    assert found[0] == np.inf
-    assert 0.0 < found[1] < np.inf
-    assert found[2] == 0.0
+    result = function.distance(np.array([[-1.0], [0.5], [2.0]]))
+    assert result[0] == np.inf
+    assert 0.0 < result[1] < np.inf
+    assert result[2] == 0.0
     assert function.lost > 0
 
 
 def test_leaves_come_in_order(book):
     model = book({"A1": 1.0, "A2": 1.0}, GIVEN, {"x": "A1"}, {"f": {"cell": "A1", "at_least": 0.1, "at_most": 0.2}})
-    (found,) = asked(model)
-    assert isinstance(found, Together)
-    assert leaves(found) == list(found.parts)
+    (result,) = asked(model)
+    assert isinstance(result, Together)
+    assert leaves(result) == list(result.parts)
 
 
 def test_points_are_drawn_as_the_sampler_draws(book, random):

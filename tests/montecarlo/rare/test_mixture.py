@@ -44,22 +44,22 @@ def test_sums_of_logarithms_neither_overflow_nor_vanish():
 def test_two_clouds_are_found_with_their_shares(random):
     cloud = random.normal(size=(1000, 2)) * [0.1, 1.0]
     points = cloud + np.where(random.random(1000) < 0.25, 5.0, -5.0)[:, None] * [1.0, 0.0]
-    found = fit_mixture(points, np.ones(1000), random)
-    right = found.means[:, 0] > 0
-    assert found.shares[right].sum() == pytest.approx(0.25, abs=4.5 * np.sqrt(0.25 * 0.75 / 1000))
-    assert np.abs(np.abs(found.means[:, 0]) - 5.0).max() < 0.1
+    result = fit_mixture(points, np.ones(1000), random)
+    right = result.means[:, 0] > 0
+    assert result.shares[right].sum() == pytest.approx(0.25, abs=4.5 * np.sqrt(0.25 * 0.75 / 1000))
+    assert np.abs(np.abs(result.means[:, 0]) - 5.0).max() < 0.1
 
 
 def test_a_layer_a_millionth_thin_is_as_good_as_any_other(random):
     points = random.normal(size=(2000, 3))
     points[:, 2] = points[:, 0] + 1e-6 * points[:, 2]
-    found = fit_mixture(points, np.ones(2000), random)
-    inside = found.draw(2000, random)
+    result = fit_mixture(points, np.ones(2000), random)
+    inside = result.draw(2000, random)
     assert np.std(inside[:, 2] - inside[:, 0]) == pytest.approx(1e-6, rel=0.3)
 
 
 def test_weights_count_as_repetitions(random):
     points = random.normal(size=(3000, 1))
-    found = fit_mixture(points, np.exp(points[:, 0] - 0.5), random)
-    drawn = found.draw(20_000, random)
+    result = fit_mixture(points, np.exp(points[:, 0] - 0.5), random)
+    drawn = result.draw(20_000, random)
     assert drawn.mean() == pytest.approx(1.0, abs=0.15)  # the tilted normal has mean 1; the weights' own error is 0.03

@@ -54,8 +54,8 @@ def test_a_shear_has_no_more_terms_than_its_points_can_tell(random, points, term
     others = random.normal(size=(points, 3))
     thin = (others[:, :1] * others[:, 1:2]) + others[:, 2:] ** 2 + 1.0
     shear = fit_shear(thin, others, np.ones(points))
-    found = (shear.constant != 0).sum() + (shear.linear != 0).sum() + (shear.quadratic != 0).sum()
-    assert found <= terms
+    result = (shear.constant != 0).sum() + (shear.linear != 0).sum() + (shear.quadratic != 0).sum()
+    assert result <= terms
     if terms == 10:
         assert shear.shift(others) == pytest.approx(thin, abs=1e-7)
 
@@ -95,6 +95,6 @@ def test_no_weights_need_no_envelope():
 def test_copies_are_the_weight_on_average(log):
     n = 1000
     luck = (np.arange(n) + 0.5) / n
-    found = copies(np.full(n, log), luck, 0.0)
-    assert found.mean() == pytest.approx(np.exp(log), abs=1 / n)
-    assert np.ptp(found) <= 1
+    result = copies(np.full(n, log), luck, 0.0)
+    assert result.mean() == pytest.approx(np.exp(log), abs=1 / n)
+    assert np.ptp(result) <= 1

@@ -44,8 +44,8 @@ def run(model):
 
 
 def test_the_answer_is_the_truth(run):
-    for found, true in ((run.acceptance, CHANCE), (run["sum"].mean, MEAN), (run["difference"].mean, 0.0)):
-        assert abs(found.value - true) < 4.5 * found.error
+    for result, true in ((run.acceptance, CHANCE), (run["sum"].mean, MEAN), (run["difference"].mean, 0.0)):
+        assert abs(result.value - true) < 4.5 * result.error
     assert run.accepted == 2000
     assert run.forecasts["sum"].size == run.inputs["a"].size == run.trial_index.size == 2000
     assert np.all(run.inputs["a"] * run.inputs["b"] > EDGE)
@@ -99,19 +99,19 @@ def test_the_same_run_is_the_same_with_threads(model, run):
 
 def test_plain_trials_give_way_where_they_would_not_do(model, monkeypatch):
     monkeypatch.setattr(rare_switch, "FIRST_LOOK", 1 << 16)
-    found = simulated(model, 1 << 22, seed=4, until_accepted=500)
-    assert found.rare is not None
-    assert found.trials >= 1 << 16
-    assert shlex.split(make_record(found)["run.repeat"])[3:] == [
+    result = simulated(model, 1 << 22, seed=4, until_accepted=500)
+    assert result.rare is not None
+    assert result.trials >= 1 << 16
+    assert shlex.split(make_record(result)["run.repeat"])[3:] == [
         *("--trials", str(1 << 22), "--until-accepted", "500", "--seed", "4")
     ]
 
 
 def test_plain_trials_stay_where_they_do(model, monkeypatch):
     monkeypatch.setattr(rare_switch, "FIRST_LOOK", 1 << 14)
-    found = simulated(model, 1 << 22, seed=4, until_accepted=10)
-    assert found.rare is None
-    assert found.accepted == 10
+    result = simulated(model, 1 << 22, seed=4, until_accepted=10)
+    assert result.rare is None
+    assert result.accepted == 10
 
 
 @pytest.fixture
@@ -125,9 +125,9 @@ def test_a_search_is_made_where_it_is_cheaper(model, costly, run):
     share = run.rare.acceptance.value
     limit, wanted = 1 << 26, 1000
     assert limit / 64 < wanted / share < limit, "plain trials would do, at a higher cost"
-    found = simulated(model, limit, seed=4, until_accepted=wanted)
-    assert found.rare is not None
-    assert found.rare.evaluations < wanted / share
+    result = simulated(model, limit, seed=4, until_accepted=wanted)
+    assert result.rare is not None
+    assert result.rare.evaluations < wanted / share
 
 
 def test_plain_trials_go_on_after_a_search_that_failed(model, costly, monkeypatch):
@@ -140,28 +140,28 @@ def test_plain_trials_go_on_after_a_search_that_failed(model, costly, monkeypatc
         return module.Search(np.empty((0, 1)), None, "it failed", 0)
 
     monkeypatch.setattr(module, "search", fails)
-    found = simulated(model, 1 << 24, seed=4, until_accepted=300)
+    result = simulated(model, 1 << 24, seed=4, until_accepted=300)
     plain = simulated(model, 1 << 24, seed=4, until_accepted=300, rare="never")
     assert tried == [1]
-    assert found.rare is None
-    assert found.stopped.reached
-    assert found.trial_index.tolist() == plain.trial_index.tolist()
+    assert result.rare is None
+    assert result.stopped.reached
+    assert result.trial_index.tolist() == plain.trial_index.tolist()
 
 
 def test_never_is_never(model, monkeypatch):
     monkeypatch.setattr(rare_switch, "FIRST_LOOK", 1 << 14)
-    found = simulated(model, 1 << 18, seed=4, until_accepted=5000, rare="never")
-    assert found.rare is None
-    assert not found.stopped.reached
+    result = simulated(model, 1 << 18, seed=4, until_accepted=5000, rare="never")
+    assert result.rare is None
+    assert not result.stopped.reached
 
 
 def test_filters_that_contradict_each_other_end_the_run(book):
     filters = {"high": {"cell": "B1", "above": 0.9}, "low": {"cell": "C1", "below": 1.0}}
-    found = simulated(book(CELLS, GIVEN, {"sum": "C1"}, filters), seed=4, until_accepted=10, rare="always")
-    assert found.rare is None
-    assert found.accepted == 0
-    assert found.stopped.by == "search"
-    (warning,) = found.warnings
+    result = simulated(book(CELLS, GIVEN, {"sum": "C1"}, filters), seed=4, until_accepted=10, rare="always")
+    assert result.rare is None
+    assert result.accepted == 0
+    assert result.stopped.by == "search"
+    (warning,) = result.warnings
     assert "contradict" in warning
     assert "'high'" in warning or "'low'" in warning
 
@@ -176,9 +176,9 @@ def test_dynamic_correlated_and_whole_numbers_come_along(book):
     }
     filters = {"f": {"cell": "C1", "above": 4.5}, "g": {"cell": "A3", "at_least": 3}}
     model = book(cells, given, {"x": "C2"}, filters, {("a", "b"): 0.5})
-    found = simulated(model, seed=4, until_accepted=1000, rare="always")
-    assert np.all(found.inputs["c"] >= 3)
-    assert np.all(found.inputs["c"] == np.round(found.inputs["c"]))
+    result = simulated(model, seed=4, until_accepted=1000, rare="always")
+    assert np.all(result.inputs["c"] >= 3)
+    assert np.all(result.inputs["c"] == np.round(result.inputs["c"]))
     rho, counts = 2 * math.sin(math.pi * 0.5 / 6), np.arange(3, 30)  # 0.5 is of the ranks
     deviation = math.sqrt(2 + 2 * rho)
     sums = np.linspace(4.5, 16, 4_001)
@@ -191,9 +191,9 @@ def test_dynamic_correlated_and_whole_numbers_come_along(book):
     mean = np.sum(weights * np.outer(sums / 2, counts))
     median = optimize.brentq(lambda x: below(x) - 0.5, 3, 30)
     for mine, true in (
-        (found["x"].mean, mean),
-        (found["x"].median, median),
-        (found.acceptance, stats.norm.sf(4.5, scale=deviation) * stats.poisson.sf(2, 1)),
+        (result["x"].mean, mean),
+        (result["x"].median, median),
+        (result.acceptance, stats.norm.sf(4.5, scale=deviation) * stats.poisson.sf(2, 1)),
     ):
         assert abs(mine.value - true) < 4.5 * mine.error
 
@@ -203,9 +203,9 @@ def test_a_search_keeps_the_posterior_of_a_reading_that_is_far_off(book):
     x = {"x": {"cell": "A1", "distribution": "Normal", "mean": 0, "std_dev": 1}, "c": {"cell": "C1", **UNIT}}
     reading = {"EDR": {"cell": "B1", "reading": 4.5, "error": "normal", "std_dev": 0.5}}
     cells = {"A1": 0.0, "B1": "=A1*1", "C1": 2.0, "D1": "=A1+C1"}
-    found = simulated(book(cells, x, {"y": "B1", "sum": "D1"}, evidence=reading), until_accepted=2_000, rare="always")
-    assert found.rare is not None
-    for mine, true in ((found["y"].mean, 3.6), (found["y"].standard_deviation, math.sqrt(0.2))):
+    result = simulated(book(cells, x, {"y": "B1", "sum": "D1"}, evidence=reading), until_accepted=2_000, rare="always")
+    assert result.rare is not None
+    for mine, true in ((result["y"].mean, 3.6), (result["y"].standard_deviation, math.sqrt(0.2))):
         assert abs(mine.value - true) < 4 * mine.error
 
 

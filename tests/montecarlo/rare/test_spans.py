@@ -25,14 +25,14 @@ POSITIONS = np.linspace(0.0, 1.0, 20_001)[:-1]
 def test_there_and_back(low, high):
     ends = [np.broadcast_to(np.array(each)[:, None], (len(low), POSITIONS.size)) for each in (low, high)]
     order = Rearranged.of(*ends)
-    found = order.uniform_at(POSITIONS)
-    assert np.abs(order.position_of(found) - POSITIONS).max() < 1e-14
-    moved = np.unique(np.round(found - POSITIONS, 12))
+    result = order.uniform_at(POSITIONS)
+    assert np.abs(order.position_of(result) - POSITIONS).max() < 1e-14
+    moved = np.unique(np.round(result - POSITIONS, 12))
     assert moved.size <= 2 * len(low) + 1  # pieces are moved, and none is stretched
     first = order.total > POSITIONS
-    inside = np.any((ends[0] - 2e-3 <= found) & (found <= ends[1] + 2e-3), axis=0)
+    inside = np.any((ends[0] - 2e-3 <= result) & (result <= ends[1] + 2e-3), axis=0)
     assert inside[first].all()
-    near = np.any((ends[0] <= found) & (found < ends[1]), axis=0)
+    near = np.any((ends[0] <= result) & (result < ends[1]), axis=0)
     assert first[near].all()
     assert np.all(order.fold(POSITIONS)[order.total > 0] < order.total[order.total > 0])
 

@@ -68,32 +68,32 @@ UNDIVIDED = [
 
 @pytest.mark.parametrize("formula", UNDIVIDED)
 def test_what_has_no_single_value_is_not_divided(function, random, formula):
-    found = function(formula, at_least=1)
-    points = random.standard_normal((500, found.dimensions))
-    (stratum,) = found.strata
-    assert np.array_equal(stratum(points) == 0.0, found.accepts(points))
+    result = function(formula, at_least=1)
+    points = random.standard_normal((500, result.dimensions))
+    (stratum,) = result.strata
+    assert np.array_equal(stratum(points) == 0.0, result.accepts(points))
 
 
 @pytest.mark.parametrize(("formula", "limits", "count"), WAYS)
 def test_the_strata_are_all_trials_and_each_is_in_one(function, random, formula, limits, count):
     """What is accepted is 0 away in exactly one stratum, and nothing else is 0 away in any."""
-    found = function(formula, **limits)
-    points = 1.5 * random.standard_normal((4000, found.dimensions))
-    distances = np.array([stratum(points) for stratum in found.strata])
+    result = function(formula, **limits)
+    points = 1.5 * random.standard_normal((4000, result.dimensions))
+    distances = np.array([stratum(points) for stratum in result.strata])
     assert len(distances) == count <= MOST_STRATA
-    accepted = found.accepts(points)
+    accepted = result.accepts(points)
     assert accepted.any()
     assert np.array_equal((distances == 0.0).sum(axis=0), accepted.astype(int))
 
 
 def test_a_branch_is_not_compared_with_another(function):
     """In either stratum the nearer trial is nearer, whatever the other branch is measured in."""
-    found = function("=IF(A3=1,A1-4,1000*(A2-4))", at_least=0)
-    order = [found.dimensions - 1 - i for i in range(found.dimensions)]
+    result = function("=IF(A3=1,A1-4,1000*(A2-4))", at_least=0)
+    order = [result.dimensions - 1 - i for i in range(result.dimensions)]
     assert sorted(order) == list(range(3))
     points = np.zeros((3, 3))
     points[:, 0], points[:, 1], points[:, 2] = [0.0, 2.0, 3.0], [0.0, 2.0, 3.0], [2.0, 2.0, -2.0]
-    (one, other) = (stratum(points) for stratum in found.strata)
+    (one, other) = (stratum(points) for stratum in result.strata)
     for inside, outside in ((slice(0, 2), slice(2, 3)), (slice(2, 3), slice(0, 2))):
         mine, theirs = (one, other) if one[inside].max() < 1000 else (other, one)
         assert mine[outside].min() > 1000 > mine[inside].max()

@@ -42,9 +42,9 @@ def test_widened_assumptions_cover_the_plain_ones(random, dimensions):
 def test_they_estimate_a_rare_share_whatever_was_found(random):
     spread = wide_assumptions(3)
     points = spread.draw(65_536, random)
-    found = Evidence.of(spread, 65_536, points[points[:, 1] > 4.75])
-    error = np.sqrt(np.exp(2 * found.logs).sum()) / found.trials
-    assert abs(found.mass - ndtr(-4.75)) < 4.5 * error < ndtr(-4.75)
+    result = Evidence.of(spread, 65_536, points[points[:, 1] > 4.75])
+    error = np.sqrt(np.exp(2 * result.logs).sum()) / result.trials
+    assert abs(result.mass - ndtr(-4.75)) < 4.5 * error < ndtr(-4.75)
 
 
 def test_plain_trials_are_found_again_by_their_numbers(book):
@@ -113,12 +113,12 @@ def test_weighted_quantiles(weights, share, value):
 
 
 def test_masses_and_shares():
-    found = Evidence(plain_assumptions(1), 50, np.zeros((3, 1)), np.log([0.1, 0.2, 0.7]))
-    assert found.mass == pytest.approx(1.0 / 50)
-    assert found.log_mass == pytest.approx(np.log(1.0 / 50))
-    assert found.shares == pytest.approx([0.1, 0.2, 0.7])
-    assert found.tells(1.99)
-    assert not found.tells(2.01)  # a hundredth of the probability
+    result = Evidence(plain_assumptions(1), 50, np.zeros((3, 1)), np.log([0.1, 0.2, 0.7]))
+    assert result.mass == pytest.approx(1.0 / 50)
+    assert result.log_mass == pytest.approx(np.log(1.0 / 50))
+    assert result.shares == pytest.approx([0.1, 0.2, 0.7])
+    assert result.tells(1.99)
+    assert not result.tells(2.01)  # a hundredth of the probability
 
 
 @pytest.mark.parametrize(("times", "unexplained"), [(29.0, False), (31.0, True)])
@@ -136,9 +136,9 @@ def test_evidence_is_joined_as_if_from_one_source():
         Evidence.of(plain_assumptions(1), 500, np.array([[0.0]])),
         Evidence.of(plain_assumptions(1), 300, np.empty((0, 1))),
     ]
-    found = join_evidence(parts)
-    assert (found.trials, found.points.tolist()) == (800, [[0.0]])
-    assert found.logs == pytest.approx([0.0])
+    result = join_evidence(parts)
+    assert (result.trials, result.points.tolist()) == (800, [[0.0]])
+    assert result.logs == pytest.approx([0.0])
     assert not len(join_evidence(parts[1:]).points)
 
 
@@ -151,8 +151,8 @@ def test_a_part_whose_scale_is_another_is_not_lost():
     """Splitting alone loses the second part with every seed."""
     truth = 1 - (1 - ndtr(-4.75)) ** 2
     random = [np.random.default_rng((21, 0, each)) for each in (0, 1)]
-    found = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 1000, 10**8, *random)
-    points, acceptance = found.resampled.points, found.resampled.acceptance
+    result = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 1000, 10**8, *random)
+    points, acceptance = result.resampled.points, result.resampled.acceptance
     assert abs(acceptance.value - truth) < 4.5 * acceptance.error < 0.1 * truth
     assert abs(np.mean(points[:, 1] > 4.7) - 0.5) < 4.5 * np.sqrt(0.25 / 1000)
 
@@ -164,16 +164,16 @@ def test_a_single_plain_trial_is_evidence_enough(random, monkeypatch):
         lambda dimensions: Tempered(np.ones(1), np.ones((1, dimensions))),
     )
     plain = Evidence.of(plain_assumptions(2), 10**6, np.array([[0.3, 4.8]]))
-    found = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 500, 10**8, random, random, plain=[plain])
+    result = find(two_parts, lambda z: two_parts(z) == 0.0, 2, 500, 10**8, random, random, plain=[plain])
     truth = 1 - (1 - ndtr(-4.75)) ** 2
-    assert abs(found.resampled.acceptance.value - truth) < 4.5 * found.resampled.acceptance.error
+    assert abs(result.resampled.acceptance.value - truth) < 4.5 * result.resampled.acceptance.error
 
 
 def test_populations_about_a_point_fill_its_part(random):
-    found = explore(lambda z: np.maximum(0.0, 4.0 - z[:, 0]), np.array([[4.01, 2.5]]), np.ones(1), -10.0, random)
-    assert found.points.min(axis=0)[0] >= 4.0
-    assert abs(found.points[-1024:, 1].mean()) < 0.5
-    assert found.log_probability == -10.0
+    result = explore(lambda z: np.maximum(0.0, 4.0 - z[:, 0]), np.array([[4.01, 2.5]]), np.ones(1), -10.0, random)
+    assert result.points.min(axis=0)[0] >= 4.0
+    assert abs(result.points[-1024:, 1].mean()) < 0.5
+    assert result.log_probability == -10.0
 
 
 def test_unexplained_trials_are_those_a_proposal_hardly_draws(random):
@@ -181,11 +181,11 @@ def test_unexplained_trials_are_those_a_proposal_hardly_draws(random):
     points = proposal.draw(1000, random) * 0.5
     near, far = np.array([[0.1, 0.2]]), np.array([[3.0, 0.2]])
     known = [Evidence.of(plain_assumptions(2), 1000, np.concatenate([near, far]))]
-    found = find_unexplained(proposal, known, points, np.ones(1000))
-    assert found.points.tolist() == far.tolist()
-    assert found.mass == pytest.approx(1e-3)
-    assert found.tells(0.05)
-    assert not found.tells(0.2)
+    result = find_unexplained(proposal, known, points, np.ones(1000))
+    assert result.points.tolist() == far.tolist()
+    assert result.mass == pytest.approx(1e-3)
+    assert result.tells(0.05)
+    assert not result.tells(0.2)
 
 
 def test_pooled_weights_count_every_source(random):
@@ -235,8 +235,8 @@ ACCOUNT = RareAccount(
     ],
 )
 def test_splitting_and_drawing_may_differ_by_as_much_as_splitting_is_known(searched, explored, ways, warns):
-    found = replace(ACCOUNT, searched=searched, explored=explored, ways=ways)
-    assert bool(found.warnings) is warns
+    result = replace(ACCOUNT, searched=searched, explored=explored, ways=ways)
+    assert bool(result.warnings) is warns
 
 
 def test_what_agrees_is_no_warning():
@@ -252,8 +252,8 @@ def test_what_agrees_is_no_warning():
     ],
 )
 def test_what_disagrees_is_known_from_below_only(changed, words):
-    found = replace(ACCOUNT, **changed)
-    (warning,) = found.warnings
+    result = replace(ACCOUNT, **changed)
+    (warning,) = result.warnings
     assert words in warning
     assert "at least 1e-06" in warning
-    assert probability_text(found).startswith("at least ")
+    assert probability_text(result).startswith("at least ")

@@ -24,11 +24,11 @@ N = 50_000
 
 
 def matrix(k, **pairs):
-    found = np.eye(k)
+    result = np.eye(k)
     for pair, value in pairs.items():
         i, j = int(pair[1]), int(pair[2])
-        found[i, j] = found[j, i] = value
-    return found
+        result[i, j] = result[j, i] = value
+    return result
 
 
 def uniforms(k, n=N):
@@ -140,11 +140,11 @@ def test_any_matrix_gives_correlations_that_are_possible(k, seed):
     rng = np.random.default_rng(seed)
     target = np.clip(rng.uniform(-1.3, 1.3, (k, k)), -1, 1)
     target = np.triu(target, 1) + np.triu(target, 1).T + np.eye(k)
-    found = GaussianCopula(target).spearman
-    assert np.diagonal(found) == pytest.approx(np.ones(k), abs=1e-9)
-    assert np.abs(found).max() <= 1 + 1e-12
-    assert np.linalg.eigvalsh(2 * np.sin(np.pi / 6 * found))[0] > -1e-7
-    assert GaussianCopula(found).spearman == pytest.approx(found, abs=1e-6)
+    result = GaussianCopula(target).spearman
+    assert np.diagonal(result) == pytest.approx(np.ones(k), abs=1e-9)
+    assert np.abs(result).max() <= 1 + 1e-12
+    assert np.linalg.eigvalsh(2 * np.sin(np.pi / 6 * result))[0] > -1e-7
+    assert GaussianCopula(result).spearman == pytest.approx(result, abs=1e-6)
 
 
 @pytest.mark.parametrize("name", TARGETS)
@@ -166,27 +166,27 @@ def symmetric(k, seed):
 
 def test_the_published_examples():
     """Higham 2002, section 4."""
-    found = nearest_correlation(np.array([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]]))
-    assert found[[0, 0, 1], [1, 2, 2]] == pytest.approx([0.7607, 0.1573, 0.7607], abs=5e-5)
+    result = nearest_correlation(np.array([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]]))
+    assert result[[0, 0, 1], [1, 2, 2]] == pytest.approx([0.7607, 0.1573, 0.7607], abs=5e-5)
     band = 2 * np.eye(4) - np.eye(4, k=1) - np.eye(4, k=-1)
-    found = nearest_correlation(band)
-    assert found[0, 1:] == pytest.approx([-0.8084, 0.1916, 0.1068], abs=5e-5)
-    assert found[1, 2] == pytest.approx(-0.6562, abs=5e-5)
+    result = nearest_correlation(band)
+    assert result[0, 1:] == pytest.approx([-0.8084, 0.1916, 0.1068], abs=5e-5)
+    assert result[1, 2] == pytest.approx(-0.6562, abs=5e-5)
 
 
 @given(st.integers(2, 8), st.integers(0, 10_000))
 def test_it_is_a_correlation_matrix_and_no_other_is_nearer(k, seed):
     """Nearest on a convex set: from it, the way to any other correlation matrix leads away from the one asked for."""
     asked = symmetric(k, seed)
-    found = nearest_correlation(asked)
-    assert np.array_equal(found, found.T) or np.allclose(found, found.T, atol=1e-12)
-    assert np.array_equal(np.diagonal(found), np.ones(k))
-    assert np.linalg.eigvalsh(found)[0] > -1e-7
+    result = nearest_correlation(asked)
+    assert np.array_equal(result, result.T) or np.allclose(result, result.T, atol=1e-12)
+    assert np.array_equal(np.diagonal(result), np.ones(k))
+    assert np.linalg.eigvalsh(result)[0] > -1e-7
     rng = np.random.default_rng(seed)
     for _ in range(5):
         rows = rng.normal(size=(k, rng.integers(1, k + 1)))
         rows /= np.linalg.norm(rows, axis=1, keepdims=True)
-        assert np.sum((asked - found) * (rows @ rows.T - found)) < 1e-5
+        assert np.sum((asked - result) * (rows @ rows.T - result)) < 1e-5
 
 
 @given(st.integers(2, 8), st.integers(0, 10_000))
@@ -243,8 +243,8 @@ def test_draws_have_it(first, second, wanted):
     assert not copula.repaired
     assert copula.spearman[0, 1] == pytest.approx(wanted, abs=1e-9)
     copula.join(u)
-    found = stats.spearmanr(values(first, u[0]), values(second, u[1])).statistic
-    assert abs(found - wanted) < 4 * 1.2 / math.sqrt(n)
+    result = stats.spearmanr(values(first, u[0]), values(second, u[1])).statistic
+    assert abs(result - wanted) < 4 * 1.2 / math.sqrt(n)
 
 
 def test_wanted_is_brought_to_what_can_be():
@@ -262,8 +262,8 @@ def test_solved_parameters_that_contradict_each_other_are_repaired():
     assert np.linalg.eigvalsh(copula.spearman)[0] > -1e-9
     u = np.random.default_rng(7).random((3, 25_000))
     copula.join(u)
-    found = stats.spearmanr(np.array([values(TENTH, u[0]), u[1], u[2]]).T).statistic
-    assert found == pytest.approx(copula.spearman, abs=4 * 1.2 / math.sqrt(25_000))
+    result = stats.spearmanr(np.array([values(TENTH, u[0]), u[1], u[2]]).T).statistic
+    assert result == pytest.approx(copula.spearman, abs=4 * 1.2 / math.sqrt(25_000))
 
 
 @pytest.mark.parametrize(
@@ -316,11 +316,11 @@ def test_nearest_by_weights_is_the_least_weighted_change(weights):
     best = min(
         (optimize.minimize(change, start, tol=1e-14) for start in ((0.5, 1, 1), (1, 2, 0.1))), key=lambda r: r.fun
     )
-    found, met = nearest_by_weights(WEIGHTED, square)
+    result, met = nearest_by_weights(WEIGHTED, square)
     assert met
-    assert [found[pair] for pair in pairs] == pytest.approx(numbers(best.x), abs=1e-4)
+    assert [result[pair] for pair in pairs] == pytest.approx(numbers(best.x), abs=1e-4)
     if not any(weights):
-        assert found == pytest.approx(nearest_correlation(WEIGHTED), abs=1e-8)
+        assert result == pytest.approx(nearest_correlation(WEIGHTED), abs=1e-8)
 
 
 def test_numbers_that_must_all_stay_and_cannot_give_way_alike():

@@ -52,8 +52,8 @@ def test_margins_and_kendalls_tau(name):
             assert stats.kstest(row, "uniform").pvalue > 1e-3
             assert 0 < row.min() <= row.max() < 1
         for i in range(1, size):
-            found = stats.kendalltau(u[i - 1, :FEW], u[i, :FEW]).statistic
-            assert abs(found - tau) < 4 * 2 * np.sqrt((1 - tau**2) / FEW)
+            result = stats.kendalltau(u[i - 1, :FEW], u[i, :FEW]).statistic
+            assert abs(result - tau) < 4 * 2 * np.sqrt((1 - tau**2) / FEW)
         rho = stats.spearmanr(u[0], u[1]).statistic
         assert abs(made(size).spearman[0, 1] - rho) < 4 / np.sqrt(u.shape[1]) + 2e-3
 
@@ -140,8 +140,8 @@ def test_values_that_stand_together_are_drawn_together():
     SameTrials(values).join(u)
     assert np.abs(u[0] - first).max() <= 0.5 / 5
     drawn = np.stack([Empirical().built(row[:, None]).ppf(at) for row, at in zip(values, u, strict=True)])
-    found, counts = np.unique(drawn, axis=1, return_counts=True)
-    assert sorted(map(tuple, found.T.tolist())) == sorted(map(tuple, values.T.tolist()))
+    result, counts = np.unique(drawn, axis=1, return_counts=True)
+    assert sorted(map(tuple, result.T.tolist())) == sorted(map(tuple, values.T.tolist()))
     assert counts == pytest.approx(1_000, abs=5 * (5_000 * 0.2 * 0.8) ** 0.5)
     assert SameTrials(values[[0, 0]]).pair(0, 1) == pytest.approx(1.0)
 

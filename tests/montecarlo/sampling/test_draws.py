@@ -29,8 +29,8 @@ def drawn(montecarlo, blocks, block=64):
 def test_a_draw_is_the_quantile_of_the_streams_uniform():
     u = np.empty(64)
     Stream(999, "a").uniforms(128, u)
-    found = sampler(uniform("a", 2.0, 5.0)).draw(128)["a"]
-    assert np.array_equal(found, UNIFORM.ppf(u, 2.0, 5.0))
+    result = sampler(uniform("a", 2.0, 5.0)).draw(128)["a"]
+    assert np.array_equal(result, UNIFORM.ppf(u, 2.0, 5.0))
 
 
 def test_draws_do_not_depend_on_the_block_size():
@@ -68,15 +68,15 @@ def test_a_group_changes_nothing_for_those_outside_it_and_nothing_for_its_first(
 def test_a_group_is_joined_before_its_quantiles():
     groups = [CorrelatedGroup(("a", "b"), GaussianCopula(PAIR))]
     montecarlo = sampler(Draw("a", NORMAL, (0.0, 1.0)), Draw("b", NORMAL, (0.0, 1.0)), groups=groups, block=100_000)
-    found = montecarlo.draw(0)
+    result = montecarlo.draw(0)
     pearson, n = 2 * np.sin(np.pi / 6 * 0.8), 100_000
-    assert abs(np.corrcoef(found["a"], found["b"])[0, 1] - pearson) < 4 * (1 - pearson**2) / np.sqrt(n)
+    assert abs(np.corrcoef(result["a"], result["b"])[0, 1] - pearson) < 4 * (1 - pearson**2) / np.sqrt(n)
 
 
 def test_truncation():
-    found = sampler(Draw("a", NORMAL, (0.0, 1.0), cutoffs=(0.5, np.inf)), block=1000).draw(0)["a"]
-    assert found.min() >= 0.5
-    assert found.max() > 2.0
+    result = sampler(Draw("a", NORMAL, (0.0, 1.0), cutoffs=(0.5, np.inf)), block=1000).draw(0)["a"]
+    assert result.min() >= 0.5
+    assert result.max() > 2.0
 
 
 def test_parameters_may_depend_on_earlier_stages():
@@ -85,10 +85,10 @@ def test_parameters_may_depend_on_earlier_stages():
         return {"2a": 2 * earlier["a"][:n]}
 
     stages = [DrawStage((uniform("a"),)), DrawStage((Draw("b", UNIFORM, ("2a", 3.0)),), dynamic=True)]
-    found = Sampler(999, stages, [], [parameters], 64).draw(0)
+    result = Sampler(999, stages, [], [parameters], 64).draw(0)
     u = np.empty(64)
     Stream(999, "b").uniforms(0, u)
-    assert np.array_equal(found["b"], UNIFORM.ppf(u, 2 * found["a"], 3.0))
+    assert np.array_equal(result["b"], UNIFORM.ppf(u, 2 * result["a"], 3.0))
 
 
 @pytest.mark.parametrize("bad", [np.nan, 4.0])
@@ -97,8 +97,8 @@ def test_trials_whose_parameters_are_no_distribution_are_nan(bad):
         return {"low": np.where(earlier["a"] > 0.5, bad, 0.0)}
 
     stages = [DrawStage((uniform("a"),)), DrawStage((Draw("b", UNIFORM, ("low", 3.0)),), dynamic=True)]
-    found = Sampler(999, stages, [], [parameters], 64).draw(0)
-    assert np.array_equal(np.isnan(found["b"]), found["a"] > 0.5)
+    result = Sampler(999, stages, [], [parameters], 64).draw(0)
+    assert np.array_equal(np.isnan(result["b"]), result["a"] > 0.5)
 
 
 def test_stages_have_parameters_of_their_own_in_order():
@@ -119,8 +119,8 @@ def test_stages_have_parameters_of_their_own_in_order():
 
 def test_a_draw_that_is_too_small_for_a_cell_is_0():
     tiny = Draw("tiny", UNIFORM, (-1e-307, 1e-307)), Draw("bell", NORMAL, (0.0, 1e-307))
-    found = sampler(*tiny, block=512).draw(0)
-    for values in found.values():
+    result = sampler(*tiny, block=512).draw(0)
+    for values in result.values():
         assert (values == 0).any()
         assert (values[values != 0] >= 2.0**-1022).any()
         assert (np.abs(values[values != 0]) >= 2.0**-1022).all()

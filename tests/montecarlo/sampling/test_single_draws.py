@@ -54,13 +54,13 @@ def test_parameters_that_vary_are_those_of_each_trial():
     one = draw("Normal", mean=AT, std_dev=2, lower_cutoff=THERE, upper_cutoff=9)
     assert (one.fixed, one.varying) == (False, [AT, THERE])
     dynamic = {AT: np.array([3.0, 3.0, 5.0, 5.0]), THERE: np.array([3.0, 1.0, -1.0, 99.0])}
-    found = filled(one, dynamic=dynamic)
+    result = filled(one, dynamic=dynamic)
     expected = [
         stats.truncnorm((low - mean) / 2, (9 - mean) / 2, mean, 2).ppf(u)
         for u, mean, low in ((0.05, 3, 3), (0.25, 3, 1), (0.5, 5, -1))
     ]
-    assert found[:3] == pytest.approx(expected)
-    assert math.isnan(found[3])  # its cutoffs leave nothing
+    assert result[:3] == pytest.approx(expected)
+    assert math.isnan(result[3])  # its cutoffs leave nothing
     assert (one.fault(), one.ends, one.ties(), one.has_mean) == (None, None, None, True)
     at_base = {AT: np.array([3.0]), THERE: np.array([3.0])}
     assert one.percentiles(np.array([0.05]), at_base) == pytest.approx(expected[:1])
@@ -150,10 +150,10 @@ def test_draws_that_are_equal(family, given, tied):
     ("start", "size", "times"), [(0, 12, 4), (3, 7, 4), (5, 2, 4), (4, 4, 4), (7, 9, 3), (2, 5, 1)]
 )
 def test_each_draw_is_kept_for_several_trials(start, size, times):
-    every, found = np.empty(40), np.empty(size)
+    every, result = np.empty(40), np.empty(size)
     Stream(5, "a").uniforms(0, every)
-    Repeated(Stream(5, "a"), times).uniforms(start, found)
-    assert found.tolist() == [every[trial // times] for trial in range(start, start + size)]
+    Repeated(Stream(5, "a"), times).uniforms(start, result)
+    assert result.tolist() == [every[trial // times] for trial in range(start, start + size)]
 
 
 def test_two_loops():

@@ -22,10 +22,10 @@ def drawn(dimension, size, n, start=0, name="a", seed=SEED):
 def unscrambled(dimension, bits):
     """The points in the order of Gray codes, in which SciPy has them."""
     i = np.arange(2**bits)
-    gray, found = i ^ i >> 1, np.zeros(2**bits, np.uint64)
+    gray, result = i ^ i >> 1, np.zeros(2**bits, np.uint64)
     for bit, column in enumerate(direction_numbers(dimension, bits)):
-        found ^= np.where(gray >> bit & 1, column, np.uint64(0))
-    return found * 2.0**-PRECISION
+        result ^= np.where(gray >> bit & 1, column, np.uint64(0))
+    return result * 2.0**-PRECISION
 
 
 @pytest.mark.parametrize("bits", [1, 5, 12])

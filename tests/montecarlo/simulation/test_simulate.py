@@ -201,26 +201,26 @@ def test_names_are_matched_whatever_their_case(book):
 
 def test_forecasts_are_what_the_function_gives_of_the_inputs(model):
     run = simulated(model, 2000)
-    found = model.function(run.inputs)
+    result = model.function(run.inputs)
     for name in FORECASTS:
-        assert run.forecasts[name] == pytest.approx(found[name], rel=1e-15)
+        assert run.forecasts[name] == pytest.approx(result[name], rel=1e-15)
 
 
 def test_filters_are_joined_with_and(model):
     run, free = simulated(model, 3000), simulated(model, 3000)
     model_prior = {name: run.prior[name] for name in GIVEN}
-    found = model.function(model_prior)
+    result = model.function(model_prior)
     lean = model_prior["A1"] - model_prior["A2"]
-    kept = (found["x"] > 0.6) & (lean >= -0.5) & (lean < 0.5)
+    kept = (result["x"] > 0.6) & (lean >= -0.5) & (lean < 0.5)
     assert run.trial_index.tolist() == np.flatnonzero(kept).tolist()
     assert free.accepted == kept.sum()
 
 
 def test_the_accounting_is_that_of_a_recount(model):
     run = simulated(model, 3000)
-    found, prior = model.function(run.prior), run.prior
+    result, prior = model.function(run.prior), run.prior
     lean = prior["A1"] - prior["A2"]
-    fails = [~(found["x"] > 0.6), ~((lean >= -0.5) & (lean < 0.5))]
+    fails = [~(result["x"] > 0.6), ~((lean >= -0.5) & (lean < 0.5))]
     assert run.tally.rejected.tolist() == [fail.sum() for fail in fails]
     assert run.tally.only.tolist() == [(fails[0] & ~fails[1]).sum(), (fails[1] & ~fails[0]).sum()]
     assert run.tally.together[0, 1] == run.tally.together[1, 0] == (fails[0] & fails[1]).sum()

@@ -16,11 +16,11 @@ pairs = st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=3, 
 @given(pairs)
 def test_it_is_scipys_also_with_ties(values):
     x, y = np.array(values, dtype=float).T
-    found = rank_correlation(x, y).value
+    result = rank_correlation(x, y).value
     if np.ptp(x) == 0 or np.ptp(y) == 0:
-        assert math.isnan(found)
+        assert math.isnan(result)
     else:
-        assert found == pytest.approx(stats.spearmanr(x, y).statistic, abs=1e-12)
+        assert result == pytest.approx(stats.spearmanr(x, y).statistic, abs=1e-12)
 
 
 @pytest.mark.parametrize("rho", [0.0, 0.5, -0.8])
@@ -29,10 +29,10 @@ def test_the_error_is_the_spread_from_run_to_run(rho):
     rng = np.random.default_rng(3)
     z = rng.normal(size=(500, 2, 300))
     z[:, 1] = rho * z[:, 0] + math.sqrt(1 - rho**2) * z[:, 1]
-    found = [rank_correlation(*run) for run in z]
-    assert np.mean([each.error for each in found]) == pytest.approx(np.std([each.value for each in found]), rel=0.16)
+    result = [rank_correlation(*run) for run in z]
+    assert np.mean([each.error for each in result]) == pytest.approx(np.std([each.value for each in result]), rel=0.16)
     truth = 6 / np.pi * np.arcsin(rho / 2)
-    held = np.mean([each.interval[0] <= truth <= each.interval[1] for each in found])
+    held = np.mean([each.interval[0] <= truth <= each.interval[1] for each in result])
     assert held == pytest.approx(0.95, abs=4 * math.sqrt(0.95 * 0.05 / 500) + 0.005)
 
 
@@ -41,11 +41,11 @@ def test_replicates():
     rng = np.random.default_rng(4)
     x, ids = rng.normal(size=8000), np.arange(8000) // 500
     y = x + rng.normal(size=8000)
-    plain, found = rank_correlation(x, y), rank_correlation(x, y, ids)
-    assert found.value == plain.value
-    assert found.error == pytest.approx(plain.error, rel=0.72)
-    half = stats.t.ppf(0.975, 15) * found.error
-    assert found.interval == pytest.approx((found.value - half, found.value + half))
+    plain, result = rank_correlation(x, y), rank_correlation(x, y, ids)
+    assert result.value == plain.value
+    assert result.error == pytest.approx(plain.error, rel=0.72)
+    half = stats.t.ppf(0.975, 15) * result.error
+    assert result.interval == pytest.approx((result.value - half, result.value + half))
 
 
 @pytest.mark.parametrize("ids", [[0] * 30, [0] * 25 + [1] * 5])

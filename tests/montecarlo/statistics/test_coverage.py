@@ -48,9 +48,9 @@ def test_errors_are_the_spread_from_run_to_run():
     """The errors' mean against the spread of 500 runs, which is known to 1/√1000 = 3.2 %; four of those and 2 %."""
     draws = stats.gamma(4).rvs((500, 500), random_state=np.random.default_rng(1))
     functions = [xs.mean, xs.standard_deviation, xs.variance, xs.coefficient_of_variation, xs.median]
-    found = [[function(sample) for function in functions] for sample in map(xs.Sample.of, draws)]
-    values = np.array([[each.value for each in run] for run in found])
-    errors = np.array([[each.error for each in run] for run in found])
+    result = [[function(sample) for function in functions] for sample in map(xs.Sample.of, draws)]
+    values = np.array([[each.value for each in run] for run in result])
+    errors = np.array([[each.error for each in run] for run in result])
     assert errors.mean(axis=0) / values.std(axis=0, ddof=1) == pytest.approx(np.ones(5), abs=0.147)
 
 

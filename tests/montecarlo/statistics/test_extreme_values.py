@@ -26,16 +26,16 @@ SAMPLES = {
 @pytest.mark.parametrize("sample", SAMPLES.values(), ids=SAMPLES)
 @pytest.mark.parametrize("replicates", [None, np.arange(600) // 60], ids=["trials", "replicates"])
 def test_no_statistic_is_infinite_and_none_overflows(sample, replicates):
-    found = describe(sample, replicate=replicates)
+    result = describe(sample, replicate=replicates)
     names = ("mean", "median", "mode", "standard_deviation", "variance", "skewness", "kurtosis", "range_width")
-    assert not any(math.isinf(getattr(found, name).value) for name in names)
-    assert sample.min() <= found.mean.value <= sample.max()
+    assert not any(math.isinf(getattr(result, name).value) for name in names)
+    assert sample.min() <= result.mean.value <= sample.max()
 
 
 def test_what_is_too_large_for_a_number_is_none():
-    found = describe(SAMPLES["a variance that overflows"])
-    assert math.isnan(found.variance.value)
-    assert found.standard_deviation.value == pytest.approx(1e200 * np.std(EVEN, ddof=1), rel=1e-12)
+    result = describe(SAMPLES["a variance that overflows"])
+    assert math.isnan(result.variance.value)
+    assert result.standard_deviation.value == pytest.approx(1e200 * np.std(EVEN, ddof=1), rel=1e-12)
     assert math.isnan(describe(1e308 * COIN).range_width.value)
 
 

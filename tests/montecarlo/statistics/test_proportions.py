@@ -35,8 +35,8 @@ def test_intervals_are_scipys(method, theirs, confidence, case):
     if method == "wilson":
         low = min(low, stats.binomtest(hits, trials, alternative="greater").proportion_ci(confidence).low)
         high = max(high, stats.binomtest(hits, trials, alternative="less").proportion_ci(confidence).high)
-    found = proportion(hits, trials, confidence=confidence, method=method).interval
-    assert found == pytest.approx((low, high), rel=1e-9, abs=1e-12)
+    result = proportion(hits, trials, confidence=confidence, method=method).interval
+    assert result == pytest.approx((low, high), rel=1e-9, abs=1e-12)
 
 
 @pytest.mark.parametrize("trials", [20, 1000, 200_000])
@@ -47,8 +47,8 @@ def test_shares_of_a_few_in_all_trials_are_covered(trials):
     shares = np.geomspace(0.01, min(trials / 2, 60), 300) / trials
     chances = stats.binom.pmf(np.arange(len(ends)), trials, shares[:, None])
     ours, theirs = (
-        np.sum(chances * ((found[:, 0] <= shares[:, None]) & (shares[:, None] <= found[:, 1])), axis=1)
-        for found in (ends, wilson)
+        np.sum(chances * ((result[:, 0] <= shares[:, None]) & (shares[:, None] <= result[:, 1])), axis=1)
+        for result in (ends, wilson)
     )
     assert ours.min() > 0.925
     assert theirs.min() < 0.85
@@ -165,17 +165,17 @@ def test_replicates_that_differ_by_one_hit_have_a_binomial_interval(more, end):
     """20 replicates of 100 trials with 24 hits, or with 25: how many have 25 is a binomial number."""
     hits = np.full(20, 24.0)
     hits[:more] += 1.0
-    found = replicated_proportion(hits, np.full(20, 100.0), method="clopper-pearson").interval
+    result = replicated_proportion(hits, np.full(20, 100.0), method="clopper-pearson").interval
     ends = stats.binomtest(more, 20).proportion_ci(0.95, method="exact")
     share_of_more = -ends.high if more == end == 0 else ends[end]
-    assert found[end] == pytest.approx((24.0 + share_of_more) / 100.0, rel=1e-12)
+    assert result[end] == pytest.approx((24.0 + share_of_more) / 100.0, rel=1e-12)
 
 
 @pytest.mark.parametrize("hits", [[24.0, 26.0] * 10, [24.0] * 19 + [26.0], [23.0] + [24.0] * 18 + [25.0]])
 def test_replicates_that_differ_by_more_have_the_interval_of_their_spread(hits):
-    found = replicated_proportion(hits, np.full(20, 100.0), method="clopper-pearson")
+    result = replicated_proportion(hits, np.full(20, 100.0), method="clopper-pearson")
     half = stats.t.ppf(0.975, 19) * np.std(hits, ddof=1) / 100.0 / math.sqrt(20)
-    assert found.interval[1] - found.interval[0] == pytest.approx(2.0 * half, rel=0.05)
+    assert result.interval[1] - result.interval[0] == pytest.approx(2.0 * half, rel=0.05)
 
 
 def test_replicates_that_all_agree_still_leave_an_error():
@@ -207,10 +207,10 @@ def test_one_replicate_gives_a_value_without_an_error():
 def test_the_share_between_is_the_rest_of_those_below_and_above(replicated):
     x = np.random.default_rng(3).normal(0.0, 1.0, 2000)
     replicate = np.arange(2000) // 125 if replicated else None
-    found = probability_between(x, -0.5, np.inf, replicate=replicate)
+    result = probability_between(x, -0.5, np.inf, replicate=replicate)
     below = probability_above(-x, 0.5, replicate=replicate)
-    assert found.value == pytest.approx(1.0 - below.value, abs=1e-12)
-    assert found.error == pytest.approx(below.error, rel=1e-9)
+    assert result.value == pytest.approx(1.0 - below.value, abs=1e-12)
+    assert result.error == pytest.approx(below.error, rel=1e-9)
     inside = share((x >= -0.5) & (x <= 0.3), replicate=replicate)
     assert probability_between(x, -0.5, 0.3, replicate=replicate) == inside
 
@@ -235,17 +235,17 @@ CASES = [(2, 0.5), (2, 0.05), (5, 0.3), (20, 0.0176), (50, 0.6)]
 def test_it_is_unbiased_and_so_is_its_variance(successes, p):
     n, weights = waiting_times(successes, p)
     assert weights.sum() == pytest.approx(1.0, abs=1e-9)
-    found = (successes - 1) / (n - 1)
-    assert (weights * found).sum() == pytest.approx(p, rel=1e-9)
+    result = (successes - 1) / (n - 1)
+    assert (weights * result).sum() == pytest.approx(p, rel=1e-9)
     assert (weights * successes / n).sum() > p  # what it is not
     estimates = [inverse_proportion(successes, int(each)).value for each in n[:50]]
-    assert estimates == pytest.approx(found[:50].tolist(), rel=1e-15)
+    assert estimates == pytest.approx(result[:50].tolist(), rel=1e-15)
     if successes > 2:
         errors = np.array([inverse_proportion(successes, int(each)).error for each in n[1:50]])
-        assert errors**2 == pytest.approx(found[1:50] * (1 - found[1:50]) / (n[1:50] - 2), rel=1e-12)
-        variance = (weights * (found - p) ** 2).sum()
+        assert errors**2 == pytest.approx(result[1:50] * (1 - result[1:50]) / (n[1:50] - 2), rel=1e-12)
+        variance = (weights * (result - p) ** 2).sum()
         keep = n > 2
-        estimated = (weights * found * (1 - found) / np.where(keep, n - 2, 1))[keep].sum()
+        estimated = (weights * result * (1 - result) / np.where(keep, n - 2, 1))[keep].sum()
         assert estimated == pytest.approx(variance, rel=1e-6)
 
 
@@ -267,19 +267,19 @@ def test_the_ends_are_where_the_observed_is_as_rare_as_a_tail():
 
 
 def test_every_trial_a_success():
-    found = inverse_proportion(50, 50)
-    assert found.value == 1.0
-    assert found.error > 0.0
-    assert found.interval[1] == 1.0
-    assert 0.9 < found.interval[0] < 1.0
+    result = inverse_proportion(50, 50)
+    assert result.value == 1.0
+    assert result.error > 0.0
+    assert result.interval[1] == 1.0
+    assert 0.9 < result.interval[0] < 1.0
     assert inverse_proportion(2, 2).value == 1.0
 
 
 def test_seeded_replicates():
     """20,000 runs: the mean of the estimates lies within 4 of its standard errors."""
     draws = np.random.default_rng(5).negative_binomial(10, 0.02, 20_000) + 10
-    found = np.array([inverse_proportion(10, int(n)).value for n in draws])
-    assert abs(found.mean() - 0.02) < 4 * found.std() / np.sqrt(found.size)
+    result = np.array([inverse_proportion(10, int(n)).value for n in draws])
+    assert abs(result.mean() - 0.02) < 4 * result.std() / np.sqrt(result.size)
 
 
 @pytest.mark.parametrize(("successes", "trials"), [(1, 5), (0, 5), (6, 5)])

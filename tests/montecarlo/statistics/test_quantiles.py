@@ -70,8 +70,8 @@ def test_whole_weights_agree_with_repeated_trials_at_every_trial(x, seed):
 @given(values, st.lists(st.floats(0, 100), min_size=2, max_size=6), st.integers(0, 99))
 def test_percentiles_rise_and_stay_within_the_extremes(x, percents, seed):
     weights = np.random.default_rng(seed).uniform(0.1, 2.0, len(x))
-    found = [percentiles(x, sorted(percents), w) for w in (None, weights)]
-    for each in found:
+    result = [percentiles(x, sorted(percents), w) for w in (None, weights)]
+    for each in result:
         line = [min(x), *(estimate.value for estimate in each.values()), max(x)]
         assert np.all(np.diff(line) >= -1e-9)
 
@@ -235,8 +235,8 @@ def test_equal_trials_are_in_no_order(weights, step):
     """Each replicate has three zeros among ten trials: what lies a little within them, or beyond, is known."""
     x, replicate = np.tile([0.0] * 3 + [1.0] * 7, 16)[::step], np.repeat(np.arange(16), 10)
     for percent, value in ((10.0, 0.0), (24.5, 0.0), (40.0, 1.0), (75.5, 1.0), (90.0, 1.0)):
-        found = percentile(x, percent, weights, replicate)
-        assert (found.value, found.error, found.interval) == (value, 0.0, (value, value))
+        result = percentile(x, percent, weights, replicate)
+        assert (result.value, result.error, result.interval) == (value, 0.0, (value, value))
 
 
 def test_replicates_of_independent_equal_trials_have_the_error_of_the_trials():

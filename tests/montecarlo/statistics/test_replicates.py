@@ -24,14 +24,14 @@ def hypercubes(rng):
 def runs(filtered):
     """Estimates of a sum of two inputs, all trials or only those with a product below 0.4."""
     rng = np.random.default_rng(5)
-    found = []
+    result = []
     for _ in range(RUNS):
         u, ids = hypercubes(rng)
         kept = u[:, 0] * u[:, 1] < 0.4 if filtered else np.full(ids.size, True)
         sample = xs.Sample.of(3 * u[kept, 0] + u[kept, 1], None, ids[kept])
         functions = (xs.mean, xs.standard_deviation, xs.median, lambda s: xs.probability_above(s, 2.5))
-        found.append([function(sample) for function in functions])
-    return found
+        result.append([function(sample) for function in functions])
+    return result
 
 
 def truths(filtered):
@@ -46,9 +46,9 @@ def truths(filtered):
 @pytest.mark.parametrize("filtered", [False, True], ids=["all", "filtered"])
 def test_errors_and_coverage_with_replicates(filtered):
     """200 runs know a spread to 5 %, 20 replicates an error to 16 %, so their mean to 1 %; 3.3 of those."""
-    found = runs(filtered)
+    result = runs(filtered)
     for column, truth in enumerate(truths(filtered)):
-        estimates = [run[column] for run in found]
+        estimates = [run[column] for run in result]
         spread = np.std([each.value for each in estimates], ddof=1)
         assert np.mean([each.error for each in estimates]) / spread == pytest.approx(1.0, abs=0.17)
         coverage = np.mean([each.interval[0] <= truth <= each.interval[1] for each in estimates])

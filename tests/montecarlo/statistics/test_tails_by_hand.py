@@ -48,10 +48,10 @@ def test_too_few_numbers_have_no_index():
 
 @pytest.mark.parametrize(("alpha", "heavy"), [(0.5, True), (1.0, True), (1.4, True), (2.2, False), (4.0, False)])
 def test_a_tail_is_heavy_where_no_standard_deviation_exists(alpha, heavy):
-    found = heavy_tail(pareto(alpha, 5_000))
-    assert (found is not None) is heavy
+    result = heavy_tail(pareto(alpha, 5_000))
+    assert (result is not None) is heavy
     if heavy:
-        assert found[0] == pytest.approx(alpha, rel=0.1)
+        assert result[0] == pytest.approx(alpha, rel=0.1)
     mirrored = heavy_tail(np.append(-pareto(alpha, 5_000), [math.nan, math.inf]))
     assert (mirrored is not None) is heavy
 
@@ -139,5 +139,5 @@ def test_digits_that_an_error_supports(error, digits):
 
 
 def test_json_has_no_infinite_numbers():
-    found = {"a": math.nan, "b": [1.0, math.inf, "x", None], "c": {"d": (2, -math.inf)}}
-    assert finite_json(found) == {"a": None, "b": [1.0, None, "x", None], "c": {"d": [2, None]}}
+    result = {"a": math.nan, "b": [1.0, math.inf, "x", None], "c": {"d": (2, -math.inf)}}
+    assert finite_json(result) == {"a": None, "b": [1.0, None, "x", None], "c": {"d": [2, None]}}

@@ -42,17 +42,17 @@ def test_the_mean_is_the_share_with_its_interval(ones, kind):
 
 def test_no_failure_in_200_000_trials():
     x = np.zeros(200_000)
-    found = xs.describe(x, threshold=0.5)
-    assert found.mean == found.probability_above
-    assert found.mean.interval[1] == pytest.approx(1.92e-5, rel=0.05)
-    assert found.mean_standard_error.value > 0.0
-    assert found.median.interval == (0.0, 0.0)  # no share that agrees with the trials moves it
+    result = xs.describe(x, threshold=0.5)
+    assert result.mean == result.probability_above
+    assert result.mean.interval[1] == pytest.approx(1.92e-5, rel=0.05)
+    assert result.mean_standard_error.value > 0.0
+    assert result.median.interval == (0.0, 0.0)  # no share that agrees with the trials moves it
 
 
 def test_percentiles_do_not_leave_zero_and_one():
-    found = xs.percentiles(np.zeros(100), [50, 99.9])
-    assert found[50.0].interval == (0.0, 0.0)
-    assert found[99.9].interval == (0.0, 1.0)
+    result = xs.percentiles(np.zeros(100), [50, 99.9])
+    assert result[50.0].interval == (0.0, 0.0)
+    assert result[99.9].interval == (0.0, 1.0)
 
 
 @pytest.mark.parametrize("ones", [1, 3])
@@ -69,8 +69,8 @@ def test_intervals_hold(p, n):
     rng, truth, hits = np.random.default_rng(3), math.sqrt(p * (1.0 - p)), np.zeros(2)
     for _ in range(400):
         x = (rng.random(n) < p).astype(float)
-        for which, (found, true) in enumerate(((xs.mean(x), p), (xs.standard_deviation(x), truth))):
-            hits[which] += found.interval[0] <= true <= found.interval[1]
+        for which, (result, true) in enumerate(((xs.mean(x), p), (xs.standard_deviation(x), truth))):
+            hits[which] += result.interval[0] <= true <= result.interval[1]
     assert (hits / 400 > 0.95 - 4.0 * math.sqrt(0.05 * 0.95 / 400) - 0.01).all()
 
 
@@ -103,18 +103,18 @@ def test_numbers_that_follow_from_the_interval_of_a_share(share, interval, devia
     """The variance p(1 − p), its root, and √((1 − p)/p), where the interval of p leads."""
     given = Estimate(share, 0.03, interval, 500)
     variance = share * (1.0 - share)
-    found = variance_of_share(given, variance)
-    assert found.interval == pytest.approx(deviation)
-    assert (found.value, found.error) == (variance, pytest.approx((deviation[1] - deviation[0]) / 2 / Z))
-    found = deviation_of_share(given, math.sqrt(variance))
+    result = variance_of_share(given, variance)
+    assert result.interval == pytest.approx(deviation)
+    assert (result.value, result.error) == (variance, pytest.approx((deviation[1] - deviation[0]) / 2 / Z))
+    result = deviation_of_share(given, math.sqrt(variance))
     low, high = map(math.sqrt, deviation)
-    assert found.interval == pytest.approx((low, high))
-    assert found.error == pytest.approx((high - low) / 2 / Z)
+    assert result.interval == pytest.approx((low, high))
+    assert result.error == pytest.approx((high - low) / 2 / Z)
     if share:
-        found = coefficient_of_share(given, math.sqrt((1.0 - share) / share))
-        assert found.interval == pytest.approx(coefficient)
-        assert found.error == pytest.approx((coefficient[1] - coefficient[0]) / 2 / Z)
-        assert found.n == 500
+        result = coefficient_of_share(given, math.sqrt((1.0 - share) / share))
+        assert result.interval == pytest.approx(coefficient)
+        assert result.error == pytest.approx((coefficient[1] - coefficient[0]) / 2 / Z)
+        assert result.n == 500
 
 
 def test_without_an_interval_or_a_value_nothing_follows():

@@ -138,8 +138,8 @@ def converted(path, left=()):
     model = load(path)
     new = path.with_name("new.xlsx")
     new.unlink(missing_ok=True)
-    found = convert(model, new)
-    assert [each[2] for each in found.left] == [*left]
+    result = convert(model, new)
+    assert [each[2] for each in result.left] == [*left]
     old, parts = (parts_of(each.read_bytes()) for each in (path, new))
     assert {name for name in old if old[name] != parts[name]} <= CHANGED
     made = load(new)
@@ -277,10 +277,10 @@ def test_the_command_says_what_it_wrote(tmp_path):
     path = tmp_path / "book.xlsx"
     save(path, CELLS, [[OFFSET, ODD, Asked(S, "$B$7", "Other"), Asked(S, "$B$6", "With odd")]])
     before = read_parts(path)
-    found = CliRunner().invoke(command, ["convert", str(path)])
-    assert found.exit_code == 0, found.output
-    assert "xlmc_assumptions" in found.output
-    assert "Sheet1!B4" in found.output
+    result = CliRunner().invoke(command, ["convert", str(path)])
+    assert result.exit_code == 0, result.output
+    assert "xlmc_assumptions" in result.output
+    assert "Sheet1!B4" in result.output
     assert read_parts(path) == before
     assert (tmp_path / "book-converted.xlsx").exists()
     assert CliRunner().invoke(command, ["convert", str(path)]).exit_code != 0

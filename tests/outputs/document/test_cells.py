@@ -117,9 +117,9 @@ def test_a_time_before_the_first_one_is_a_number():
 
 
 def test_ends_of_an_interval_have_no_more_digits_than_the_error_where_no_sheet_shows_them():
-    found = Estimate(6.272e11, 1.4e9, (624_394_266_931.4, 629_696_104_000.2))
-    assert [each.written for each in interval(found)] == ["624,400,000,000", "629,700,000,000"]
-    assert [each.written for each in interval(found, form=Form(Kind.CURRENCY, "$0"))] == [
+    result = Estimate(6.272e11, 1.4e9, (624_394_266_931.4, 629_696_104_000.2))
+    assert [each.written for each in interval(result)] == ["624,400,000,000", "629,700,000,000"]
+    assert [each.written for each in interval(result, form=Form(Kind.CURRENCY, "$0"))] == [
         "$624,400,000,000",
         "$629,700,000,000",
     ]

@@ -10,22 +10,22 @@ from xlmc.outputs.document.element import EMPTY, Html, element, join, void
 
 def read(source):
     """What a parser makes of it: starts, ends and texts."""
-    found = []
+    result = []
     parser = HTMLParser()
-    parser.handle_starttag = lambda tag, attributes: found.append((tag, attributes))
-    parser.handle_endtag = lambda tag: found.append(f"/{tag}")
-    parser.handle_data = found.append
+    parser.handle_starttag = lambda tag, attributes: result.append((tag, attributes))
+    parser.handle_endtag = lambda tag: result.append(f"/{tag}")
+    parser.handle_data = result.append
     parser.feed(source)
     parser.close()
-    texts = "".join(each for each in found if isinstance(each, str) and each != "/p")
-    return [each for each in found if not isinstance(each, str) or each == "/p"], texts
+    texts = "".join(each for each in result if isinstance(each, str) and each != "/p")
+    return [each for each in result if not isinstance(each, str) or each == "/p"], texts
 
 
 @given(st.text(), st.text())
 def test_no_text_is_markup(text, value):
     text = text.replace("\r", "")  # a parser makes a line feed of it
-    found, texts = read(element("p", text, title=value).source)
-    assert found == [("p", [("title", value)]), "/p"]
+    result, texts = read(element("p", text, title=value).source)
+    assert result == [("p", [("title", value)]), "/p"]
     assert texts == text
 
 

@@ -71,8 +71,8 @@ def test_every_format_of_an_estimate_is_known(value, error):
 
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_a_number_carries_its_full_value(value):
-    found = shown_html(Shown(value)).source
-    assert float(found.partition('value="')[2].partition('"')[0]) == value
+    result = shown_html(Shown(value)).source
+    assert float(result.partition('value="')[2].partition('"')[0]) == value
 
 
 def test_estimates():

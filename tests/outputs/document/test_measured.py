@@ -36,9 +36,9 @@ def test_it_is_written_as_what_it_measures(measured, text):
 
 
 @pytest.mark.parametrize("what", ["number", "share", "spread", "change", "points"])
-@pytest.mark.parametrize("found", [None, HALF, Estimate(math.nan), Estimate(1.0, 0.0), Estimate(0.3)])
-def test_it_takes_as_many_cells_whatever_is_found(what, found):
-    assert [len(Measured(found, what, interval=each).shown) for each in (False, True)] == [2, 4]
+@pytest.mark.parametrize("result", [None, HALF, Estimate(math.nan), Estimate(1.0, 0.0), Estimate(0.3)])
+def test_it_takes_as_many_cells_whatever_is_found(what, result):
+    assert [len(Measured(result, what, interval=each).shown) for each in (False, True)] == [2, 4]
 
 
 def test_its_cells_hold_the_full_numbers():

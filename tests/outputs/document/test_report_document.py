@@ -54,10 +54,10 @@ def pages(files):
 
 @pytest.fixture(scope="module")
 def word(files):
-    found = docx.Document(files[1])
-    for run in found.element.iter("{http://schemas.openxmlformats.org/wordprocessingml/2006/main}t"):
+    result = docx.Document(files[1])
+    for run in result.element.iter("{http://schemas.openxmlformats.org/wordprocessingml/2006/main}t"):
         run.text = run.text.replace("\u00a0", " ")
-    return found
+    return result
 
 
 def texts_of_word(word):
@@ -74,7 +74,7 @@ def numbers_in(value):
     if isinstance(value, int | float):
         yield float(value)
     elif isinstance(value, str):
-        yield from (float(found.replace(",", "").replace("−", "-")) for found in NUMBER.findall(value))
+        yield from (float(result.replace(",", "").replace("−", "-")) for result in NUMBER.findall(value))
     else:
         for each in value.values() if isinstance(value, dict) else value:
             yield from numbers_in(each)
@@ -109,12 +109,12 @@ def test_every_section_stands_in_the_report_in_its_order(built, word):
 
 def test_both_files_hold_every_text_of_the_document(built, pages, word):
     in_pdf, in_word = squeezed("".join(pages)), squeezed("".join(texts_of_word(word)))
-    found = list(texts_of(built))
-    assert len(found) > 300
+    result = list(texts_of(built))
+    assert len(result) > 300
     in_pdf = re.sub(r"intersection\.xlsx,seed999Page\d+of\d+|Case2026-17", "", in_pdf)
-    lost = [text for text in found if squeezed(text) not in in_word]
+    lost = [text for text in result if squeezed(text) not in in_word]
     assert lost == []
-    lost = [text for text in found if squeezed(text) not in in_pdf and squeezed(text) != "2026-17"]
+    lost = [text for text in result if squeezed(text) not in in_pdf and squeezed(text) != "2026-17"]
     assert lost == []
 
 
@@ -128,8 +128,8 @@ def test_every_number_in_both_files_is_one_of_the_run(case_study, built, files, 
             continue
         for row in table.rows[1:]:
             for cell in row.cells[1:]:
-                for found in NUMBER.findall(cell.text):
-                    assert agrees(found, known), (found, cell.text)
+                for result in NUMBER.findall(cell.text):
+                    assert agrees(result, known), (result, cell.text)
                     count += 1
     assert count > 200
 
@@ -140,8 +140,8 @@ def test_the_answers_are_those_of_the_json_digit_by_digit(case_study, word, page
         cells = [cell.text for cell in row.cells]
         assert cells[:2] == [forecast["name"], forecast["units"]]
         asked = forecast["statistics"], forecast["central_range"]
-        found = (asked[0]["mean"], asked[0]["standard_deviation"], asked[1]["low"], asked[1]["high"])
-        for cell, estimate in zip(cells[2:6], found, strict=True):
+        result = (asked[0]["mean"], asked[0]["standard_deviation"], asked[1]["low"], asked[1]["high"])
+        for cell, estimate in zip(cells[2:6], result, strict=True):
             value, _, error = cell.partition(" ± ")
             decimals = len(value.partition(".")[2])
             assert value == f"{estimate['value']:.{decimals}f}"
@@ -159,8 +159,8 @@ def shown(estimate, text, scale=1.0):
 
 
 def table_with(word, head):
-    (found,) = [table for table in word.tables if head in [cell.text for cell in table.rows[0].cells]]
-    return [[cell.text for cell in row.cells] for row in found.rows[1:]]
+    (result,) = [table for table in word.tables if head in [cell.text for cell in table.rows[0].cells]]
+    return [[cell.text for cell in row.cells] for row in result.rows[1:]]
 
 
 def test_every_assumption_has_its_numbers_of_the_json(case_study, word):
@@ -260,10 +260,10 @@ def test_word_has_headings_captions_heading_rows_and_numbered_pages(files, word)
 
 
 def test_no_line_of_word_ends_between_a_number_and_its_percent_sign_unit_or_error(files):
-    found = "\n".join(texts_of_word(docx.Document(files[1])))
-    assert len(re.findall(r"\d\u00a0(?:%|mph)(?!\w)", found)) > 50
-    assert len(re.findall(r"±\u00a0\d", found)) > 100
-    assert not re.search(r"\d (?:%|mph)(?!\w)|± \d", found)
+    result = "\n".join(texts_of_word(docx.Document(files[1])))
+    assert len(re.findall(r"\d\u00a0(?:%|mph)(?!\w)", result)) > 50
+    assert len(re.findall(r"±\u00a0\d", result)) > 100
+    assert not re.search(r"\d (?:%|mph)(?!\w)|± \d", result)
 
 
 def test_texts_of_a_person_never_become_markup(pages, word):
@@ -273,12 +273,12 @@ def test_texts_of_a_person_never_become_markup(pages, word):
 
 def test_sections_forecasts_and_paper_can_be_chosen(case_study, tmp_path):
     wanted = Wanted({}, ["answer", "forecasts"], ["NISSAN delta-v "], "a4")
-    found = build(case_study, wanted)
-    assert [each.text for each in found.blocks if isinstance(each, Heading)] == [
+    result = build(case_study, wanted)
+    assert [each.text for each in result.blocks if isinstance(each, Heading)] == [
         "The question and the answer",
         "The forecasts",
     ]
-    (table,) = [each for each in found.blocks if isinstance(each, Table)]
+    (table,) = [each for each in result.blocks if isinstance(each, Table)]
     assert [row[0] for row in table.rows] == ["Nissan delta-V"]
     path = Simulation(case_study).save_report(tmp_path / "a.pdf", sections=["answer"], paper="a4")
     box = pypdf.PdfReader(path).pages[0].mediabox
@@ -286,7 +286,7 @@ def test_sections_forecasts_and_paper_can_be_chosen(case_study, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("asked", "said"),
+    ("asked", "message"),
     [
         ({"sections": ["nothing"]}, "no section 'nothing'"),
         ({"forecasts": ["nothing"]}, "no forecast 'nothing'"),
@@ -294,8 +294,8 @@ def test_sections_forecasts_and_paper_can_be_chosen(case_study, tmp_path):
         ({"case": {" ": "x"}}, "no name"),
     ],
 )
-def test_what_no_report_has_is_refused(case_study, tmp_path, asked, said):
-    with pytest.raises(SimulationError, match=said):
+def test_what_no_report_has_is_refused(case_study, tmp_path, asked, message):
+    with pytest.raises(SimulationError, match=message):
         Simulation(case_study).save_report(tmp_path / "report.pdf", **asked)
     assert list(tmp_path.iterdir()) == []
 

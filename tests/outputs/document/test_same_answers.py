@@ -32,22 +32,22 @@ def simulate(make):
     ids=["chosen", "other", "other units", "asked more", "yes/no", "constant"],
 )
 def test_same_answers(make, simulate, first, second, more, same):
-    found = simulate(make.forecast("Chosen", first), make.forecast("Reading", second, **more))
-    assert same_answers(found, found.results) == ({"Chosen": ("Reading",)} if same else {})
+    result = simulate(make.forecast("Chosen", first), make.forecast("Reading", second, **more))
+    assert same_answers(result, result.results) == ({"Chosen": ("Reading",)} if same else {})
 
 
 def test_a_report_tells_of_them_once_with_all_names(make, simulate):
-    found = simulate(
+    result = simulate(
         make.forecast("Chosen", "B1"),
         make.forecast("Reading", "B2"),
         make.forecast("Other", "B3"),
         make.forecast("Third", "B1"),
     )
-    blocks = build(found, Wanted()).blocks
+    blocks = build(result, Wanted()).blocks
     called = "Chosen (the same in every trial: Reading; Third)"
-    (said,) = [each for each in blocks if isinstance(each, Bullets) and each.leads]
-    assert [text.partition(":")[0] for text in said.texts] == [called.partition(":")[0], "Other"]
-    assert said.texts[0].startswith(f"{called}: ")
+    (message,) = [each for each in blocks if isinstance(each, Bullets) and each.leads]
+    assert [text.partition(":")[0] for text in message.texts] == [called.partition(":")[0], "Other"]
+    assert message.texts[0].startswith(f"{called}: ")
     answers = next(each for each in blocks if isinstance(each, Table))
     assert [row[0] for row in answers.rows] == [called, "Other"]
     captions = " ".join(each.caption for each in blocks if isinstance(each, Figure))
@@ -56,7 +56,7 @@ def test_a_report_tells_of_them_once_with_all_names(make, simulate):
 
 
 def test_one_that_is_asked_for_alone_is_told_by_its_own_name(make, simulate):
-    found = simulate(make.forecast("Chosen", "B1"), make.forecast("Reading", "B2"))
-    blocks = build(found, Wanted(forecasts=["reading"], sections=["answer"])).blocks
+    result = simulate(make.forecast("Chosen", "B1"), make.forecast("Reading", "B2"))
+    blocks = build(result, Wanted(forecasts=["reading"], sections=["answer"])).blocks
     (table,) = [each for each in blocks if isinstance(each, Table)]
     assert [row[0] for row in table.rows] == ["Reading"]

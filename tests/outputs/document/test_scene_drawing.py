@@ -38,8 +38,8 @@ def book(*drawn, up="Y, ft"):
 def paths(drawing):
     """The points of every path."""
     root = ElementTree.fromstring(drawing.svg)
-    found = [each.get("d") for each in root.iter("{http://www.w3.org/2000/svg}path")]
-    return [[tuple(map(float, pair)) for pair in re.findall(r"[ML](-?[\d.]+) (-?[\d.]+)", path)] for path in found]
+    result = [each.get("d") for each in root.iter("{http://www.w3.org/2000/svg}path")]
+    return [[tuple(map(float, pair)) for pair in re.findall(r"[ML](-?[\d.]+) (-?[\d.]+)", path)] for path in result]
 
 
 def test_a_square_stays_a_square_where_both_axes_have_the_same_units():

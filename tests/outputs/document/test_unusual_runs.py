@@ -99,8 +99,8 @@ def test_a_few_forecasts_have_large_figures_and_many_have_small_ones(make):
     def widths(count):
         names = [make.forecast(f"f{number}", f"B{number}") for number in range(1, count + 1)]
         cells = {"A1": 1.0, **{f"B{number}": f"=A1*{number}" for number in range(1, count + 1)}}
-        found = build(make.simulate(cells, [make.uniform("a", "A1", 0, 1)], names), Wanted(sections=["forecasts"]))
-        return [block.drawing.width for block in found.blocks if isinstance(block, Figure)]
+        result = build(make.simulate(cells, [make.uniform("a", "A1", 0, 1)], names), Wanted(sections=["forecasts"]))
+        return [block.drawing.width for block in result.blocks if isinstance(block, Figure)]
 
     assert widths(4) == [160.0] * 4
     assert widths(5) == [HALF] * 5

@@ -21,9 +21,9 @@ def browser(tmp_path_factory):
     pytest.importorskip("selenium.webdriver")
     if reason := missing("chromium", "chromedriver"):
         pytest.skip(reason)
-    found = Browser(tmp_path_factory, requests=False)
-    yield found
-    found.quit()
+    result = Browser(tmp_path_factory, requests=False)
+    yield result
+    result.quit()
 
 
 @pytest.fixture
@@ -32,11 +32,11 @@ def chromium(browser):
 
     Afterwards it shows nothing: a window whose server has ended would ask for it until the session ends.
     """
-    found = browser()
-    found.get_log("browser")
-    yield found
-    complaints = [entry["message"] for entry in found.get_log("browser")]
-    found.get("about:blank")
+    result = browser()
+    result.get_log("browser")
+    yield result
+    complaints = [entry["message"] for entry in result.get_log("browser")]
+    result.get("about:blank")
     assert complaints == []
 
 
@@ -50,19 +50,19 @@ def _servers(state):
         server = LiveServer(bound_socket(0), library, idle=idle, clock=clock)
         thread = threading.Thread(target=lambda: asyncio.run(server.serve()))
         thread.start()
-        found = Running(server, library, thread)
-        started.append(found)
+        result = Running(server, library, thread)
+        started.append(result)
         end = time.monotonic() + 120
         while not server._server.started:
             assert time.monotonic() < end
             time.sleep(0.01)
-        return found
+        return result
 
     yield run
-    for found in started:
-        found.server.end()
-    for found in started:
-        found.ended()
+    for results in started:
+        results.server.end()
+    for results in started:
+        results.ended()
 
 
 @pytest.fixture

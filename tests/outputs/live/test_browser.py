@@ -63,13 +63,13 @@ class Page:
 
     def until(self, condition):
         """Wait for something: the page looks itself, which is cheaper than to be asked."""
-        found = self.browser.execute_async_script(
+        result = self.browser.execute_async_script(
             "const done = arguments[0], end = Date.now() + 100_000;"
             f"const look = () => {{ if ({condition}) done(true); else if (Date.now() > end) done(false);"
             " else setTimeout(look, 10); };"
             "look();"
         )
-        assert found, condition
+        assert result, condition
 
     def loaded(self):
         """Wait for the first answer of a window that is being opened."""
@@ -91,19 +91,19 @@ class Page:
         return self.browser.find_elements("css selector", selector)
 
     def one(self, selector):
-        (found,) = self.all(selector)
-        return found
+        (result,) = self.all(selector)
+        return result
 
     def of(self, selector, condition, *given):
         """The first element that fits: one question to the browser, and not one for each element."""
-        found = self.run(
+        result = self.run(
             f"const [all, ...given] = arguments; "
             f"return [...document.querySelectorAll(all)].find((each) => {condition})",
             selector,
             *given,
         )
-        assert found is not None, (selector, given)
-        return found
+        assert result is not None, (selector, given)
+        return result
 
     def card(self, name):
         return self.of("article.card", "each.ariaLabel === given[0]", name)
@@ -114,7 +114,7 @@ class Page:
     def button(self, text, within="body"):
         return self.of(f"{within} button", "each.checkVisibility() && each.innerText.trim() === given[0]", text)
 
-    def click(self, found):
+    def click(self, result):
         """Press the mouse's button on the middle of it, where nothing else may lie."""
         at = self.run(
             "const [found] = arguments;"
@@ -122,9 +122,9 @@ class Page:
             "const { x, y, width, height } = found.getBoundingClientRect();"
             "const at = { x: x + width / 2, y: y + height / 2 };"
             "return found.contains(document.elementFromPoint(at.x, at.y)) ? at : null",
-            found,
+            result,
         )
-        assert at is not None, f"{found.get_attribute('outerHTML')} is hidden"
+        assert at is not None, f"{result.get_attribute('outerHTML')} is hidden"
         for kind in ("mouseMoved", "mousePressed", "mouseReleased"):
             button = {} if kind == "mouseMoved" else {"button": "left", "clickCount": 1}
             self.browser.execute_cdp_cmd("Input.dispatchMouseEvent", {"type": kind, **at, **button})
@@ -180,9 +180,9 @@ def test_by_mouse(chromium, running, tmp_path):
     high = float(knob.get_attribute("aria-valuenow"))
     assert high > 0.8
     assert accepted(case, Numbers(FRICTION, {"high": high})) in page.stand
-    said = page.all(".moved")[0].text
-    assert said.startswith("Answer 1: speed at the beginning: mean ")
-    assert " → " in said
+    message = page.all(".moved")[0].text
+    assert message.startswith("Answer 1: speed at the beginning: mean ")
+    assert " → " in message
     assert "changed" in page.card(FRICTION).get_attribute("class")
 
     page.at_rest(lambda: page.type(page.box(page.card(FRICTION), "High"), "0.9"))
@@ -288,8 +288,8 @@ def test_by_keys_alone(chromium, running, tmp_path):
         )
         for _ in range(most // 10):
             press(Keys.TAB * 10)
-            if found := page.run("if (window.reached) window.seeking.abort(); return window.reached"):
-                return found
+            if result := page.run("if (window.reached) window.seeking.abort(); return window.reached"):
+                return result
         raise AssertionError("it cannot be reached by Tab")
 
     page.run("document.body.tabIndex = -1; document.body.focus()")
@@ -533,7 +533,7 @@ def test_a_page_of_another_local_server_gets_nothing(chromium, running, tmp_path
         chromium.get(f"http://127.0.0.1:{other.server_port}/index.html")
         other.shutdown()
     thread.join(120)
-    found = chromium.execute_async_script(
+    result = chromium.execute_async_script(
         "const [host, key, done] = arguments;"
         "const tried = async (path, given) => {"
         " try { return await (await fetch(`http://${host}${path}`, given)).text(); } catch { return null; } };"
@@ -545,7 +545,7 @@ def test_a_page_of_another_local_server_gets_nothing(chromium, running, tmp_path
         server.host,
         server.library.only,
     )
-    assert found == ["", 0, None, None, None, False, False]
+    assert result == ["", 0, None, None, None, False, False]
     assert not server.library.keeper.dropped.exists()
     assert {entry["level"] for entry in chromium.get_log("browser")} <= {"SEVERE"}  # that it was refused
 
@@ -559,7 +559,7 @@ def test_a_page_says_nothing_to_another_server_on_its_port(chromium, running, tm
     page.until("document.body.classList.contains('over')")
     server.ended()
     heard = []
-    with listening(heard, lambda said: json.dumps({"kind": "proof", "nonce": "", "proof": "0" * 64}), server.port):
+    with listening(heard, lambda message: json.dumps({"kind": "proof", "nonce": "", "proof": "0" * 64}), server.port):
         entered = chromium.execute_async_script(
             "const done = arguments[0], socket = new WebSocket(`ws://${location.host}/live/any`);"
             "socket.onopen = async () => done(await Entry.enter(socket)); socket.onerror = () => done('no connection');"
@@ -666,8 +666,8 @@ def test_numbers_are_taken_as_people_type_them_or_refused_with_a_reason(chromium
         else:
             assert abs(value - expected) < 1e-12, (text, value)
     for text, expected in RANGES.items():
-        found = page.run("return typedRange(arguments[0])", text)
-        assert (found and [found["low"], found["high"]]) == expected, (text, found)
+        result = page.run("return typedRange(arguments[0])", text)
+        assert (result and [result["low"], result["high"]]) == expected, (text, result)
 
     card = page.card(FRICTION)
     page.at_rest(lambda: page.type(page.box(card, "Low"), "0.65 to 0.9"))
@@ -761,21 +761,21 @@ def test_the_probability_above_a_threshold_is_said_at_once_and_follows(chromium,
     book = wide_book(tmp_path / "case.xlsx", assumptions=6, forecasts=1)
     page = Page(chromium, running(book=book))
 
-    def said(threshold, *changes):
+    def message(threshold, *changes):
         (values,) = simulated(applied(load(book), changes)).forecasts.values()
         return int((values > threshold).sum()), values.size
 
     share = "document.querySelector('.beyond').textContent"
     page.at_rest(lambda: page.type(page.one(".above"), "18,5"))
-    above, trials = said(18.5)
+    above, trials = message(18.5)
     exact = page.run("return Live.right.panels.values().next().value.panel.trials.reached(18.5, true).doubt")
-    found = page.run(f"return {share}")
-    assert found.startswith("P = ")
-    count = int(found.partition("(")[2].removeprefix("about ").split()[0].replace(",", ""))
+    result = page.run(f"return {share}")
+    assert result.startswith("P = ")
+    count = int(result.partition("(")[2].removeprefix("about ").split()[0].replace(",", ""))
     assert abs(count - above) <= exact + 0.5
-    assert f"of {trials:,})" in found
+    assert f"of {trials:,})" in result
     page.at_rest(lambda: page.type(page.box(page.card(FRICTION), "High"), "1.2"))
-    above, _ = said(18.5, Numbers(FRICTION, {"high": 1.2}))
+    above, _ = message(18.5, Numbers(FRICTION, {"high": 1.2}))
     count = int(page.run(f"return {share}").partition("(")[2].removeprefix("about ").split()[0].replace(",", ""))
     assert abs(count - above) <= 3
     page.type(page.one(".above"), "much")
@@ -785,12 +785,12 @@ def test_the_probability_above_a_threshold_is_said_at_once_and_follows(chromium,
 def test_a_reading_is_dragged_limits_go_and_answers_are_stated_otherwise(chromium, running, tmp_path):
     page = Page(chromium, running(book=book_of_readings(tmp_path / "case.xlsx")))
 
-    def said():
+    def message():
         return set(page.changes)
 
     at_40 = page.card("Filter at 40 ft")
     page.at_rest(lambda: page.type(page.box(at_40, "Reading"), "32 ± 2.5"))
-    assert said() == {"at 40 ft: reading 31 → 32", "at 40 ft: plus or minus 3 → 2.5"}
+    assert message() == {"at 40 ft: reading 31 → 32", "at 40 ft: plus or minus 3 → 2.5"}
     assert "reads 32, uniform (Plus or minus 2.5): from 29.5 to 34.5" in at_40.text
     page.at_rest(lambda: page.slider("reading of at 40 ft").send_keys("\ue014"))
     assert page.run("return Live.state.filters.find(({ name }) => name === 'at 40 ft').limits[0].value") > 32
@@ -798,7 +798,7 @@ def test_a_reading_is_dragged_limits_go_and_answers_are_stated_otherwise(chromiu
     assert "another way" in page.card("Filter witness").text
     page.at_rest(lambda: page.click(page.button("As in the workbook", ".card.changed")))
     page.at_rest(lambda: page.type(page.box(page.card("v"), "Upper cutoff"), " "))
-    assert said() == {"v: Upper cutoff 38 → none"}
+    assert message() == {"v: Upper cutoff 38 → none"}
     box = page.box(page.card("v"), "Upper cutoff")
     assert (box.get_attribute("value"), box.get_attribute("placeholder")) == ("", "none")
     page.at_rest(lambda: page.click(page.one("#undo")))
@@ -807,7 +807,7 @@ def test_a_reading_is_dragged_limits_go_and_answers_are_stated_otherwise(chromiu
     page.at_rest(lambda: page.type(page.box(possible, "At most"), " "))
     page.type(page.box(possible, "At least"), " ")
     page.until("document.querySelector('#troubles').textContent.includes('would have no limit')")
-    assert said() == {"possible: at most 80 → none"}
+    assert message() == {"possible: at most 80 → none"}
     page.at_rest(lambda: page.click(page.one("#undo")))
 
     speed = page.of("article.forecast", "each.querySelector('h3').innerText === given[0]", "speed")
@@ -819,7 +819,7 @@ def test_a_reading_is_dragged_limits_go_and_answers_are_stated_otherwise(chromiu
     assert central.get_attribute("aria-invalid") is not None
     page.at_rest(lambda: page.type(central, "90"))
     assert central.get_attribute("aria-invalid") is None
-    assert said() == {"speed: threshold 35 → 32", "speed: central range 51 % → 90 %"}
+    assert message() == {"speed: threshold 35 → 32", "speed: central range 51 % → 90 %"}
     assert "Central 90 % range" in speed.text
     page.at_rest(lambda: page.type(above, " "))
     assert above.get_attribute("value") == ""
@@ -946,7 +946,7 @@ def test_as_many_bars_are_drawn_as_are_typed(chromium, running, tmp_path):
     )
     box = partial(page.of, ".bar-count", "each.ariaLabel === given[0]", "Number of bars of speed")
     own, trials, *ends = page.run(bars)
-    said = page.run("return document.querySelector('.statements').innerText")
+    message = page.run("return document.querySelector('.statements').innerText")
     page.type(box(), str(4 * own))
     assert page.run(bars) == [4 * own, trials, *ends]
     page.type(box(), "7.5")
@@ -961,7 +961,7 @@ def test_as_many_bars_are_drawn_as_are_typed(chromium, running, tmp_path):
     page.type(box(), "")
     page.at_rest(lambda: page.click(page.one("#reset")))
     assert page.run(bars) == [own, trials, *ends]
-    assert page.run("return document.querySelector('.statements').innerText") == said
+    assert page.run("return document.querySelector('.statements').innerText") == message
     assert box().get_attribute("placeholder") == str(own)
 
 

@@ -44,26 +44,26 @@ def moved(book):
 
 def first(model):
     """The first assumption that is drawn and has a mean, and the mean."""
-    found = next(each for each in model.live if "mean" in each.parameters)
-    return found.name, found.parameters["mean"]
+    result = next(each for each in model.live if "mean" in each.parameters)
+    return result.name, result.parameters["mean"]
 
 
 def test_results_of_a_changed_state_say_so_first_and_can_be_repeated(state, book, monkeypatch):
     keep_sheets(monkeypatch, *SHORT)
     keep_few_trials(monkeypatch)
-    (said,) = state.changes
+    (message,) = state.changes
     path = save_result(state, book, "book")
     assert path.name == "case-changed-results.xlsx"
     sheet = openpyxl.load_workbook(path)["Results"]
     texts = [cell.value for row in sheet.iter_rows(max_row=8) for cell in row if isinstance(cell.value, str)]
-    assert any(text.startswith("These are not results of case.xlsx as it is") and said in text for text in texts)
+    assert any(text.startswith("These are not results of case.xlsx as it is") and message in text for text in texts)
     again = replay(path)
     assert again.to_the_last_bit
     assert again.record["changed.name"] == "case.xlsx"
     assert again.record["changed.sha256"] == state.own.workbook.sha256 != again.record["file.sha256"]
-    assert [row["change"] for row in again.record.rows("changed")] == [said]
+    assert [row["change"] for row in again.record.rows("changed")] == [message]
     assert "COPY.xlsx" in again.record["run.repeat"]
-    assert recorded_run(path).changed_from.changes == (said,)
+    assert recorded_run(path).changed_from.changes == (message,)
     own = openpyxl.load_workbook(path)
     row = next(each for each in state.own.assumptions if each.name == first(state.own)[0]).row
     assert first(state.own)[1] * 0.98 in [cell.value for cell in own[row.sheet][row.row]]
@@ -71,15 +71,15 @@ def test_results_of_a_changed_state_say_so_first_and_can_be_repeated(state, book
 
 def test_saved_runs_pages_and_json_carry_the_changes(state, book, monkeypatch):
     leave_out_fits(monkeypatch)
-    (said,) = state.changes
+    (message,) = state.changes
     run = open_run(save_result(state, book, "run"))
-    assert run.changed_from.changes == (said,)
-    assert make_record(run).rows("changed") == [{"change": said}]
+    assert run.changed_from.changes == (message,)
+    assert make_record(run).rows("changed") == [{"change": message}]
     assert run.forecasts.keys() == state.run.forecasts.keys()
     page = save_result(state, book, "page").read_text("utf-8")
     assert "These are not results of case.xlsx as it is" in page
-    found = json.loads(save_result(state, book, "json").read_text("utf-8"))
-    assert found["record"]["changed"]["rows"] == [{"change": said}]
+    result = json.loads(save_result(state, book, "json").read_text("utf-8"))
+    assert result["record"]["changed"]["rows"] == [{"change": message}]
 
 
 def test_files_are_named_by_the_scenario(book):
@@ -122,14 +122,14 @@ def state_of(book):
 def test_changes_are_typed_into_a_copy_or_into_the_workbook_of_which_a_copy_is_kept(tmp_path):
     book = simple(tmp_path / "case.xlsx")  # as Excel saved it
     state, before = moved(book), book.read_bytes()
-    told = write_changes(state, book, into=False)
-    assert told.startswith(f"Written: {book.with_name('case-changed.xlsx')}. 1 cell was typed into")
+    messages = write_changes(state, book, into=False)
+    assert messages.startswith(f"Written: {book.with_name('case-changed.xlsx')}. 1 cell was typed into")
     assert book.read_bytes() == before
     name, mean = first(state.own)
     assert first(load(book.with_name("case-changed.xlsx"))) == (name, mean * 0.98)
-    told = write_changes(state, book, into=True)
-    assert told.startswith("Typed into case.xlsx. 1 cell was typed into")
-    assert told.endswith("The workbook as it was: case-before.xlsx")
+    messages = write_changes(state, book, into=True)
+    assert messages.startswith("Typed into case.xlsx. 1 cell was typed into")
+    assert messages.endswith("The workbook as it was: case-before.xlsx")
     assert book.with_name("case-before.xlsx").read_bytes() == before
     assert first(load(book)) == (name, mean * 0.98)
     session = Session(state.own)

@@ -45,16 +45,16 @@ def mixed(tmp_path_factory):
 
 
 def state(**values):
-    found = Adjustments()
+    result = Adjustments()
     for key, value in values.items():
-        found = found.having("assumption", FRICTION, key, value)
-    return found
+        result = result.having("assumption", FRICTION, key, value)
+    return result
 
 
-def assert_same(found, expected, about):
-    assert (found.trials, found.accepted, found.block) == (expected.trials, expected.accepted, expected.block), about
-    assert found.tally.rejected.tolist() == expected.tally.rejected.tolist(), about
-    for mine, theirs in ((found.forecasts, expected.forecasts), (found.inputs, expected.inputs)):
+def assert_same(result, expected, about):
+    assert (result.trials, result.accepted, result.block) == (expected.trials, expected.accepted, expected.block), about
+    assert result.tally.rejected.tolist() == expected.tally.rejected.tolist(), about
+    for mine, theirs in ((result.forecasts, expected.forecasts), (result.inputs, expected.inputs)):
         assert list(mine) == list(theirs), about
         assert all(mine[name].tobytes() == theirs[name].tobytes() for name in mine), about
 
@@ -64,10 +64,10 @@ def test_while_it_moves_a_held_assumption_needs_no_other_formulas(case):
     for adjustments in (state(frozen=True), state(frozen=True, base=0.71), state(frozen=True, high=0.9)):
         moving = known.moving(adjustments)
         assert moving.model.lowering is case.lowering
-        found = simulate(moving.model, trials=TRIALS, sampling="mc", own_runner=moving.runner(1_024))
+        result = simulate(moving.model, trials=TRIALS, sampling="mc", own_runner=moving.runner(1_024))
         expected = simulate(known.at_rest(adjustments), trials=TRIALS, sampling="mc")
-        assert set(found.inputs[FRICTION]) == {adjustments.assumptions[FRICTION].get("base", case_base(case))}
-        assert {name: values.tobytes() for name, values in found.forecasts.items()} == {
+        assert set(result.inputs[FRICTION]) == {adjustments.assumptions[FRICTION].get("base", case_base(case))}
+        assert {name: values.tobytes() for name, values in result.forecasts.items()} == {
             name: values.tobytes() for name, values in expected.forecasts.items()
         }
         assert moving.base.keys() == expected.forecasts.keys()
@@ -106,11 +106,11 @@ def test_while_decisions_move_the_numbers_are_those_of_the_edited_workbook(tmp_p
     known, nodes = KnownModels(own, TRIALS), set()
     for adjustments in DECIDED:
         moving = known.moving(adjustments)
-        found = simulate(moving.model, trials=TRIALS, sampling="mc", own_runner=moving.runner(1_024))
+        result = simulate(moving.model, trials=TRIALS, sampling="mc", own_runner=moving.runner(1_024))
         expected = simulate(edited(own, changes_of(own.definitions, adjustments)), trials=TRIALS, sampling="mc")
-        assert found.trial_index.tobytes() == expected.trial_index.tobytes(), adjustments
+        assert result.trial_index.tobytes() == expected.trial_index.tobytes(), adjustments
         for name, values in expected.forecasts.items():
-            assert found.forecasts[name].tobytes() == values.tobytes(), (name, adjustments)
+            assert result.forecasts[name].tobytes() == values.tobytes(), (name, adjustments)
         base = KnownModels(own, TRIALS)._with_typed(adjustments.typed_part()).moving(adjustments.untyped_part()).base
         assert moving.base == base
         if adjustments.decisions and not adjustments.filters:

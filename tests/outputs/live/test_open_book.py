@@ -192,12 +192,12 @@ def test_studies_are_asked_of_the_state_that_is_shown(running, book):
         window.say("set", **change(name, number["key"], number["value"] * 1.5).fields)
         window.next("rest", lambda message: message["version"] == 1)
         window.say("study", what="screen", other="")
-        told = window.next("study", lambda message: message["state"] != "running", seconds=120.0)
-        assert told["of"].startswith(f"{name}: ")
-        assert told["state"] == "done"
+        messages = window.next("study", lambda message: message["state"] != "running", seconds=120.0)
+        assert messages["of"].startswith(f"{name}: ")
+        assert messages["state"] == "done"
         window.say("study", what="verify", other="")
-        told = window.next("study")  # tests/outputs/live/test_browser.py waits for its end
-        assert (told["what"], told["state"], told["of"]) == ("verify", "running", "")
+        messages = window.next("study")  # tests/outputs/live/test_browser.py waits for its end
+        assert (messages["what"], messages["state"], messages["of"]) == ("verify", "running", "")
         window.say("cancel")
         assert window.next("study", lambda message: message["state"] != "running")["state"] == "cancelled"
     assert [each.name for each in book.parent.glob("*.xlsx")] == ["case.xlsx"]
@@ -212,15 +212,15 @@ def test_what_waits_for_a_window_that_sleeps_does_not_grow():
                 window.put({"kind": kind, "version": number, **more})
             window.put({"kind": "news", "text": f"news {number}", "link": ""})
             window.put({"kind": "trouble", "about": "save", "text": str(number)})
-        found = []
+        result = []
         with contextlib.suppress(TimeoutError):
             while True:
-                found.append(json.loads(await asyncio.wait_for(window.next(), 0.01)))
-        return found
+                result.append(json.loads(await asyncio.wait_for(window.next(), 0.01)))
+        return result
 
-    found = asyncio.run(waiting())
-    assert len(found) == 3 + 1 + 1 + 2 + 20 + 1
-    assert {each["value"] for each in found if each["kind"] == "moved"} == {497, 498, 499}
-    assert {each["version"] for each in found if each["kind"] == "part"} == {498, 499}
-    assert [each["text"] for each in found if each["kind"] == "news"] == [f"news {n}" for n in range(480, 500)]
-    assert [each["text"] for each in found if each["kind"] == "trouble"] == ["499"]
+    results = asyncio.run(waiting())
+    assert len(results) == 3 + 1 + 1 + 2 + 20 + 1
+    assert {each["value"] for each in results if each["kind"] == "moved"} == {497, 498, 499}
+    assert {each["version"] for each in results if each["kind"] == "part"} == {498, 499}
+    assert [each["text"] for each in results if each["kind"] == "news"] == [f"news {n}" for n in range(480, 500)]
+    assert [each["text"] for each in results if each["kind"] == "trouble"] == ["499"]

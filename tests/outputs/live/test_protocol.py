@@ -48,9 +48,9 @@ def test_what_no_page_says_is_refused(text):
 
 
 def test_what_a_page_says_is_read_without_what_it_adds():
-    said = read_message(json.dumps({**SET, "more": 1}))
-    assert said.kind == "set"
-    assert dict(said.fields) == {name: value for name, value in SET.items() if name != "kind"}
+    message = read_message(json.dumps({**SET, "more": 1}))
+    assert message.kind == "set"
+    assert dict(message.fields) == {name: value for name, value in SET.items() if name != "kind"}
 
 
 NUMBERS = {"kind": "numbers", "of": "assumption", "name": "a", "values": {"low": 1}, "seq": 0}

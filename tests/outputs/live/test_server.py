@@ -458,11 +458,11 @@ def test_a_connection_whose_head_came_in_time_lives_on(open_book, monkeypatch):
 
 def test_small_messages_are_sent_at_once():
     """Else the second of two waits until the first is acknowledged, some 40 ms."""
-    found = []
+    result = []
 
     async def connected(_, writer):
         sent_at_once = writer.get_extra_info("socket").getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
-        found.append(bool(sent_at_once))
+        result.append(bool(sent_at_once))
         writer.close()
 
     async def connect_once():
@@ -473,7 +473,7 @@ def test_small_messages_are_sent_at_once():
                 writer.close()
 
     asyncio.run(connect_once())
-    assert found == [True]
+    assert result == [True]
 
 
 def test_it_listens_on_the_loopback_address_alone(open_book):

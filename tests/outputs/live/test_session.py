@@ -74,10 +74,10 @@ SCENARIOS = {
 KEYS = {"Low": "low", "High": "high", "Frozen": "frozen", "At most": "at_most", "Above": "above"}
 
 
-def done(session, job, clock=lambda: 0.0, told=lambda share: None):
+def done(session, job, clock=lambda: 0.0, messages=lambda share: None):
     """What is told of a job that is run, or given up."""
     try:
-        return session.finish(job, job.run(lambda: session.wanted(job), told, clock))
+        return session.finish(job, job.run(lambda: session.wanted(job), messages, clock))
     except SupersededError:
         return session.superseded(job)
 
@@ -208,8 +208,8 @@ def test_a_state_that_is_no_distribution_is_told_and_the_last_good_answer_stays(
     assert "Inputs!" in trouble["text"]
     assert session.rest is before
     session.receive(change(FRICTION, "high", 0.9))
-    told = settle(session)
-    assert [each["text"] for each in told if each["kind"] == "trouble"] == [""]
+    messages = settle(session)
+    assert [each["text"] for each in messages if each["kind"] == "trouble"] == [""]
     assert session.rest is not before
 
 
@@ -234,15 +234,15 @@ def test_what_the_workbook_does_not_have_cannot_be_set(case, name, key, value):
 def test_the_state_behind_and_the_difference_in_numbers(case):
     session = Session(case[1])
     settle(session)
-    told = session._last["frame "]["forecasts"]["Nissan delta-V"]
-    assert told["behind"] is None
+    messages = session._last["frame "]["forecasts"]["Nissan delta-V"]
+    assert messages["behind"] is None
     session.receive(change(FRICTION, "high", 0.85))
     settle(session)
-    told = session._last["frame "]["forecasts"]["Nissan delta-V"]
-    assert told["said"].startswith("Nissan delta-V: mean 22.9")
-    assert " → " in told["said"]
-    assert sum(told["behind"]["counts"]) <= told["behind"]["trials"] == session.behind.accepted
-    mean = {label: rest for label, *rest in told["beside"]}["Mean"]
+    messages = session._last["frame "]["forecasts"]["Nissan delta-V"]
+    assert messages["said"].startswith("Nissan delta-V: mean 22.9")
+    assert " → " in messages["said"]
+    assert sum(messages["behind"]["counts"]) <= messages["behind"]["trials"] == session.behind.accepted
+    mean = {label: rest for label, *rest in messages["beside"]}["Mean"]
     assert mean[0].startswith(f"{session.rest['Nissan delta-V'].mean.value:.2f}"[:4])
     assert mean[1].startswith(f"{session.behind['Nissan delta-V'].mean.value:.2f}"[:4])
     session.receive(PageMessage("pin", {}))
@@ -289,8 +289,8 @@ def test_a_workbook_that_was_saved_keeps_what_was_moved_and_says_what_changed(tm
     session.receive(change(distance, "high", 66.0))
     settle(session)
     saved = load(edited(path, tmp_path / "saved.xlsx", {(distance, "High"): 66.0, (friction, "Low"): 0.65}))
-    told = session.replace_book(saved, what_changed(model, saved))
-    (news,) = [each["text"] for each in told if each["kind"] == "news"]
+    messages = session.replace_book(saved, what_changed(model, saved))
+    (news,) = [each["text"] for each in messages if each["kind"] == "news"]
     assert f"{friction}: Low 0.6 → 0.65" in news
     assert f"{distance}: High 60 → 66" in news
     assert session.adjustments.assumptions == {friction: {"high": 0.85}}
@@ -341,8 +341,8 @@ def test_dates_percentages_and_money_are_told_as_their_cells_show_them(tmp_path)
     assert (start["step"], state["filters"][0]["step"]) == (1.0, 1.0)
     assert (discount["form"]["factor"], discount["form"]["after"], discount["form"]["moment"]) == (100.0, " %", None)
     edited(tmp_path / "case.xlsx", tmp_path / "edited.xlsx", {("start", "Low"): 46_060.0, ("price", "Mean"): 5e4})
-    told = what_changed(model, load(tmp_path / "edited.xlsx"))
-    assert told == ["start: Low 2026-02-01 → 2026-02-07", "price: Mean $48,000 → $50,000"]
+    messages = what_changed(model, load(tmp_path / "edited.xlsx"))
+    assert messages == ["start: Low 2026-02-01 → 2026-02-07", "price: Mean $48,000 → $50,000"]
 
 
 _EPOCH = datetime(1899, 12, 30)
@@ -364,12 +364,12 @@ def test_the_largest_numbers_are_answered(tmp_path, monkeypatch, book, of, value
     monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", 500)
     session = Session(load(book(tmp_path / "case.xlsx")))
     name, key, kind = of
-    told = [*session.receive(change(name, key, value, of=kind)).all, *session.greeting()]
+    messages = [*session.receive(change(name, key, value, of=kind)).all, *session.greeting()]
     for _ in range(8):
         if (job := session.job()) is not None:
-            told += done(session, job)
+            messages += done(session, job)
     assert session.adjustments
-    assert all(written(each) for each in told)
+    assert all(written(each) for each in messages)
 
 
 def test_what_meets_a_fault_of_xlmc_is_taken_back(case, monkeypatch):
@@ -440,12 +440,12 @@ def test_what_matters_follows_while_a_handle_moves_unless_it_takes_long(case, mo
         [(0.01, ["moving", "sketch"], 1), (9.0, ["moving", "sketch"], 0), (9.0, ["moving"], 0)]
     ):
         session.receive(change(FRICTION, "high", 0.9 + number / 100, held=True))
-        told = []
+        messages = []
         for stage in stages:
             job = session.job()
             assert job.stage == stage
-            told += done(session, job, chain([0.0], repeat(seconds if stage == "sketch" else 0.0)).__next__)
-        assert [each["tab"] for each in told if each["kind"] == "part"] == ["matters"] * sketched
+            messages += done(session, job, chain([0.0], repeat(seconds if stage == "sketch" else 0.0)).__next__)
+        assert [each["tab"] for each in messages if each["kind"] == "part"] == ["matters"] * sketched
     assert session.job().stage == "rest"
 
 
@@ -470,15 +470,15 @@ def test_all_scenarios_are_compared_in_one_table(case):
     assert f"{expected.accepted:,}" in part["html"]
 
 
-def assert_quadrants(said, x, y):
+def assert_quadrants(message, x, y):
     """A quadrant's share is said as it is counted; of two medians each half of a quantity lies above its own."""
-    shares = [float(each) for each in re.findall(r"(\d+\.\d) %", said)]
+    shares = [float(each) for each in re.findall(r"(\d+\.\d) %", message)]
     both = 100.0 * np.mean((x > np.median(x)) & (y > np.median(y)))
     assert shares[0] == pytest.approx(both, abs=0.051)
     assert shares[0] + shares[1] == pytest.approx(50.0, abs=0.15)
     assert shares[0] + shares[2] == pytest.approx(50.0, abs=0.15)
     assert sum(shares) == pytest.approx(100.0, abs=0.21)
-    assert said.count("(median)") == 2
+    assert message.count("(median)") == 2
 
 
 def test_pairs_of_the_first_trials_alone_say_so(readings, monkeypatch):
@@ -524,16 +524,16 @@ def test_a_matrix_is_not_made_while_a_handle_moves(readings):
 def test_quadrants_are_those_of_a_threshold_where_there_is_one(readings):
     session = Session(readings[1])
     settle(session)
-    said = pair_of(session.rest, "speed", "distance")["quadrants"]
+    message = pair_of(session.rest, "speed", "distance")["quadrants"]
     x, y = session.rest.forecasts["speed"], session.rest.forecasts["distance"]
-    assert said.startswith("Above speed 35 mph (threshold) and above distance ")
+    assert message.startswith("Above speed 35 mph (threshold) and above distance ")
     still = Session(readings[1])
     still.receive(change("t", "frozen", True))
     still.receive(change("v", "frozen", True))
     settle(still)
     assert pair_of(still.rest, "speed", "distance")["quadrants"] == ""
     only_second = 100.0 * np.mean((y > np.median(y)) & (x <= 35.0))
-    assert f"only the second {only_second:.1f} %" in said
+    assert f"only the second {only_second:.1f} %" in message
 
 
 def test_the_usual_variants_are_scenarios(case):
@@ -629,10 +629,10 @@ def test_further_handles_give_what_the_edited_workbook_gives(readings, tmp_path,
     if stage == "moving":
         done(session, until(session, stage))
     session.receive(PageMessage("show", {"name": "kept"}))
-    found = until(session, stage).run(lambda: True, lambda share: None, lambda: 0.0).simulation
-    expected = simulate(copy, trials=found.trials, sampling="mc", evidence=found.settings.evidence)
-    assert found.trials in (moving, 4_000)
-    assert found.trial_index.tobytes() == expected.trial_index.tobytes()
+    result = until(session, stage).run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    expected = simulate(copy, trials=result.trials, sampling="mc", evidence=result.settings.evidence)
+    assert result.trials in (moving, 4_000)
+    assert result.trial_index.tobytes() == expected.trial_index.tobytes()
     session.receive(PageMessage("undo", {}))
     assert len(session.adjustments.as_json()["filters"]) <= 2
 
@@ -665,8 +665,8 @@ def test_a_scenario_headed_by_what_has_a_handle_can_be_shown(readings, tmp_path,
     if handles is None:
         return
     session.receive(PageMessage("show", {"name": "other"}))
-    found = session.adjustments.as_json()
-    assert {name: each for part in found.values() for name, each in part.items()} == handles
+    result = session.adjustments.as_json()
+    assert {name: each for part in result.values() for name, each in part.items()} == handles
     settle(session)
     (scenario,) = session.own.definitions.scenarios
     expected = simulate(applied(session.own, scenario.changes), evidence=None)
@@ -742,9 +742,9 @@ def test_another_kind_of_distribution_gives_what_the_edited_workbook_gives(
     typed = {(name, heading): None for heading in ("Low", "High", "Mean", "Std dev", "Lower cutoff", "Upper cutoff")}
     typed |= {(name, COLUMNS[key]): value for key, value in shown.items()} | {(name, "Distribution"): kind}
     copy = load(edited(path, tmp_path / "edited.xlsx", typed))
-    found = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
-    expected = simulate(copy, trials=moving, sampling="mc", evidence=found.settings.evidence)
-    assert found.trial_index.tobytes() == expected.trial_index.tobytes()
+    result = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    expected = simulate(copy, trials=moving, sampling="mc", evidence=result.settings.evidence)
+    assert result.trial_index.tobytes() == expected.trial_index.tobytes()
     settle(session)
     expected = simulate(copy, evidence=None)
     assert session.rest.trial_index.tobytes() == expected.trial_index.tobytes()
@@ -827,9 +827,9 @@ def test_another_correlation_gives_what_the_edited_workbook_gives(tied, tmp_path
         book["Tied"][cell] = value
     book.save(tmp_path / "edited.xlsx")
     copy = load(tmp_path / "edited.xlsx")
-    found = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
-    expected = simulate(copy, trials=moving, sampling="mc", evidence=found.settings.evidence)
-    assert found.trial_index.tobytes() == expected.trial_index.tobytes()
+    result = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    expected = simulate(copy, trials=moving, sampling="mc", evidence=result.settings.evidence)
+    assert result.trial_index.tobytes() == expected.trial_index.tobytes()
     settle(session)
     expected = simulate(copy, evidence=None)
     assert session.rest.trial_index.tobytes() == expected.trial_index.tobytes()
@@ -850,8 +850,8 @@ def test_another_correlation_gives_what_the_edited_workbook_gives(tied, tmp_path
     settle(session)
     assert page_of(session.at_rest())
     session.receive(change(name, "correlation", 1.5, of="correlation"))
-    told = settle(session)
-    (trouble,) = (each["text"] for each in told if each["kind"] == "trouble" and each["text"])
+    messages = settle(session)
+    (trouble,) = (each["text"] for each in messages if each["kind"] == "trouble" and each["text"])
     assert "must lie between -1 and 1" in trouble
     session.receive(PageMessage("reset", {"of": "correlation", "name": name}))
     assert not session.adjustments.correlations
@@ -895,9 +895,9 @@ def test_a_decision_and_a_solved_cell_give_what_the_edited_workbook_gives(
     assert openpyxl.load_workbook(path)[cell[0]][cell[1]].value is not None
     content = "wet" if name == "road" else value
     copy = typed_into(path, tmp_path / "edited.xlsx", {cell: content, ("T", "E2"): 2.2})
-    found = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    result = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
     expected = simulate(copy, trials=moving, sampling="mc")
-    assert found.trial_index.tobytes() == expected.trial_index.tobytes()
+    assert result.trial_index.tobytes() == expected.trial_index.tobytes()
     settle(session)
     expected = simulate(copy)
     assert session.rest.trial_index.tobytes() == expected.trial_index.tobytes()
@@ -974,11 +974,11 @@ def test_what_matters_does_not_tell_a_decision_as_an_assumption(tmp_path, monkey
     monkeypatch.setattr("xlmc.outputs.live.session.MOVING_TRIALS", 1_000)
     session = Session(load(book_with_decisions(tmp_path / "case.xlsx")))
     session.receive(PageMessage("view", seen(["sum", "way"], "matters")))
-    told = settle(session)
+    messages = settle(session)
     for sent in (change("limit", "value", 60.0, of="decision"), change("limit", "value", None, of="decision")):
         session.receive(sent)
-        told += settle(session)
-    parts = [each for each in told if each["kind"] == "part"]
+        messages += settle(session)
+    parts = [each for each in messages if each["kind"] == "part"]
     assert {each["version"] for each in parts} == {0, 1, 2}
     assert not [each for each in parts if "decided" in each["html"]]
 
@@ -1005,9 +1005,9 @@ def test_trials_and_seed_give_what_a_workbook_with_these_settings_gives(readings
     first = session.rest
     assert session.greeting()[1]["run"] == {"trials": 4_000, "seed": 999, "own": [4_000, 999], "changed": False}
     session.receive(change("witness", "reading", 60.0, of="filter"))
-    (told,) = session.receive(PageMessage("run", {"trials": 6_000, "seed": 7})).all
-    assert told["run"] == {"trials": 6_000, "seed": 7, "own": [4_000, 999], "changed": True}
-    found = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
+    (messages,) = session.receive(PageMessage("run", {"trials": 6_000, "seed": 7})).all
+    assert messages["run"] == {"trials": 6_000, "seed": 7, "own": [4_000, 999], "changed": True}
+    result = until(session, "moving").run(lambda: True, lambda share: None, lambda: 0.0).simulation
     book = openpyxl.load_workbook(edited(path, tmp_path / "edited.xlsx", {("witness", "Reading"): 60.0}))
     sheet = book["T"]
     table = sheet.tables["xlmc_settings"]
@@ -1019,8 +1019,8 @@ def test_trials_and_seed_give_what_a_workbook_with_these_settings_gives(readings
     book.save(tmp_path / "edited.xlsx")
     copy = load(tmp_path / "edited.xlsx")
     assert (copy.definitions.settings.trials, copy.definitions.settings.seed) == (6_000, 7)
-    expected = simulate(copy, trials=moving, sampling="mc", evidence=found.settings.evidence)
-    assert found.trial_index.tobytes() == expected.trial_index.tobytes()
+    expected = simulate(copy, trials=moving, sampling="mc", evidence=result.settings.evidence)
+    assert result.trial_index.tobytes() == expected.trial_index.tobytes()
     settle(session)
     expected = simulate(copy, evidence=None)
     for name, values in expected.forecasts.items():
@@ -1096,8 +1096,8 @@ def test_numbers_that_are_no_error_of_a_reading_are_said_and_can_be_mended(readi
     session = Session(readings[1])
     settle(session)
     session.receive(change(name, key, value, of=of))
-    told = settle(session)
-    assert message in next(each["text"] for each in told if each["kind"] == "trouble" and each["text"])
+    messages = settle(session)
+    assert message in next(each["text"] for each in messages if each["kind"] == "trouble" and each["text"])
     session.receive(PageMessage("undo", {}))
     settle(session)
     assert session.at_rest().run is session.rest
@@ -1134,16 +1134,16 @@ def test_a_tab_that_fails_is_told_once_and_tried_again_with_the_next_state(case)
     session = Session(case[1])
     settle(session)
     session.receive(PageMessage("view", seen([], "tables")))
-    told = []
+    messages = []
     while (job := session.job()) is not None:
         failed = job.stage == "part"
-        told += session.finish(job, Outcome(problem="no") if failed else job.run(lambda: True, print, lambda: 0.0))
-        assert len(told) < 10
-    assert [each["text"] for each in told if each["kind"] == "trouble"] == ["no"]
+        messages += session.finish(job, Outcome(problem="no") if failed else job.run(lambda: True, print, lambda: 0.0))
+        assert len(messages) < 10
+    assert [each["text"] for each in messages if each["kind"] == "trouble"] == ["no"]
     session.receive(change(FRICTION, "high", 0.9))
-    told = settle(session)
-    assert [each["text"] for each in told if each["kind"] == "trouble" and each["about"] == "part"] == [""]
-    assert any(each["kind"] == "part" and each["tab"] == "tables" for each in told)
+    messages = settle(session)
+    assert [each["text"] for each in messages if each["kind"] == "trouble" and each["about"] == "part"] == [""]
+    assert any(each["kind"] == "part" and each["tab"] == "tables" for each in messages)
 
 
 def test_a_state_that_is_not_possible_cannot_be_saved_and_that_is_said(case):
@@ -1186,12 +1186,12 @@ def test_long_work_is_given_up_for_a_move_and_taken_up_again(case, stage, monkey
         session.receive(PageMessage("compare", {}))
     job, shares = until(session, stage), []
 
-    def told(share):
+    def messages(share):
         shares.append(share)
         if len(shares) == 2:
             session.receive(change(FRICTION, "high", 0.9, held=True))
 
-    (over,) = done(session, job, told=told)
+    (over,) = done(session, job, told=messages)
     assert over["stage"] == "over"
     assert len(shares) == 2
     assert 0.0 <= shares[0] < shares[1] <= 1.0
@@ -1284,8 +1284,8 @@ def test_changes_are_undone_and_done_again(case):
     assert undo() == (None, [], (False, True))
     assert undo() == (None, [], (False, True))
     for _ in range(6):
-        found = undo("redo")
-    assert found == ({"high": 0.8}, [], (True, False))
+        result = undo("redo")
+    assert result == ({"high": 0.8}, [], (True, False))
     undo()
     session.receive(change(FRICTION, "high", 0.7))
     assert undo("redo") == ({"high": 0.7}, ["a"], (True, False))
@@ -1297,8 +1297,8 @@ def test_a_drag_that_is_given_up_leaves_nothing_to_undo(case):
     assert state["undo"]
     session.receive(PageMessage("undo", {}))
     for value, held in ((0.86, True), (0.87, True), (0.95, False)):
-        (told,) = session.receive(change(FRICTION, "high", value, held=held)).all
-    assert (told["kind"], told["undo"], told["changes"]) == ("state", False, [])
+        (messages,) = session.receive(change(FRICTION, "high", value, held=held)).all
+    assert (messages["kind"], messages["undo"], messages["changes"]) == ("state", False, [])
 
 
 def test_undoing_takes_nothing_away_that_another_window_kept(case):

@@ -138,8 +138,8 @@ def test_two_programs_on_one_workbook_take_nothing_from_each_other(book, keeper)
     assert first.keep(book, {"b": both["b"]}, Adjustments()) == {"b": both["b"]}  # forgotten in the first
     assert second.keep(book, both, Adjustments()) == {"b": both["b"]}  # and so in the second, which did not change it
     first.keep(book, {"b": changed("x", value=3.0)}, Adjustments())
-    found = second.keep(book, {"b": changed("x", value=4.0)}, Adjustments())
-    assert sorted(each.assumptions["x"]["high"] for each in found.values()) == [3.0, 4.0]
+    result = second.keep(book, {"b": changed("x", value=4.0)}, Adjustments())
+    assert sorted(each.assumptions["x"]["high"] for each in result.values()) == [3.0, 4.0]
 
 
 def test_of_one_name_with_two_contents_both_are_kept_under_the_next_free_name():

@@ -45,10 +45,10 @@ def picture(timed):
 @pytest.fixture(scope="module")
 def series(book):
     """Name -> the points of each series of that name, in order."""
-    found = {}
+    result = {}
     for name, *point in book["Chart data"].iter_rows(min_row=5, values_only=True):
-        found.setdefault(name, []).append([each for each in point if each is not None])
-    return found
+        result.setdefault(name, []).append([each for each in point if each is not None])
+    return result
 
 
 SYMBOLS = {
@@ -162,7 +162,7 @@ def test_axes_are_decades_that_hold_all(charts, picture, series):
     expected += [top, 10.0 ** np.floor(log(bottom) + 1e-9)]
     assert ends == pytest.approx(expected)
     assert len(re.findall(r'<c:logBase val="10"/>', main)) == 2
-    points = [point for found in series.values() for point in found]
+    points = [point for result in series.values() for point in result]
     assert all(
         expected[1] * 0.999 <= x <= expected[0] and expected[3] * 0.99 <= y <= top * 1.001 for x, y, *_ in points
     )

@@ -29,10 +29,10 @@ def figure(timed):
 @pytest.fixture(scope="module")
 def drawn(figure):
     """Colour -> the points of the lines of that colour in the large panel."""
-    found = {}
+    result = {}
     for line in figure.axes[0].lines:
-        found.setdefault(line.get_color(), []).append(np.column_stack(line.get_data()))
-    return found
+        result.setdefault(line.get_color(), []).append(np.column_stack(line.get_data()))
+    return result
 
 
 def log(values):
@@ -44,12 +44,12 @@ def test_every_method_has_its_line(figure, drawn, picture):
         style = STYLES[line.curve.method.key]
         lines = drawn[style.colour]
         measured = np.array([[each.x, each.y] for each in line.points])
-        assert any(found.shape == measured.shape and np.allclose(found, measured) for found in lines)
+        assert any(result.shape == measured.shape and np.allclose(result, measured) for result in lines)
         if line.once:
             level = [[line.points[0].x, line.points[0].y], [picture.frame[1], line.points[0].y]]
-            assert any(found.shape == (2, 2) and np.allclose(found, level) for found in lines)
+            assert any(results.shape == (2, 2) and np.allclose(results, level) for results in lines)
         if line.ahead:
-            assert any(found.shape == (6, 2) and np.allclose(found, line.ahead) for found in lines)
+            assert any(answer.shape == (6, 2) and np.allclose(answer, line.ahead) for answer in lines)
     bars = [each for each in figure.axes[0].containers if each.has_yerr]
     assert len(bars) == len(picture.lines)
     for bar, line in zip(bars, picture.lines, strict=True):
@@ -64,9 +64,9 @@ def test_levels_guides_and_the_recommended_run(figure, drawn, picture):
     assert axis.get_ylim() == (bottom, top)
     wide = log(right / left)
     assert log(axis.get_xlim()) == pytest.approx([log(left) - 0.36 * wide, log(right) + 0.62 * wide])
-    for mark, found in zip(picture.marks, drawn["#B00020"], strict=True):
-        assert found == pytest.approx(np.array([[axis.get_xlim()[0], mark.y], [right, mark.y]]))
-    slopes = [log(found[1, 1] / found[0, 1]) / log(found[1, 0] / found[0, 0]) for found in drawn["#6B7785"]]
+    for mark, result in zip(picture.marks, drawn["#B00020"], strict=True):
+        assert result == pytest.approx(np.array([[axis.get_xlim()[0], mark.y], [right, mark.y]]))
+    slopes = [log(results[1, 1] / results[0, 1]) / log(results[1, 0] / results[0, 0]) for results in drawn["#6B7785"]]
     assert slopes == pytest.approx([-0.5, -1.0])
     (ring,) = (line for line in axis.lines if line.get_markersize() == 15)
     assert tuple(np.ravel(ring.get_data())) == picture.chosen[:2]

@@ -34,18 +34,18 @@ def test_every_run_has_a_row_and_errors_are_those_of_the_study(small):
     expected = [(curve, runs) for curve in small.every if curve.answers for runs in curve.lengths]
     assert len(table.rows) == len(expected)
     for row, (curve, runs) in zip(table.rows, expected, strict=True):
-        found = dict(zip(table.heads, row, strict=True))
-        assert found["Method"] == curve.method.name
-        assert found["Trials"] == ("–" if curve in small.once else f"{runs.budget:,}")
-        assert found["Evaluations"] == f"{runs.evaluations:,.0f}"
-        assert found["Time"].startswith("≈ ") is not runs.measured
-        assert (found["Failed"] == "–") is (runs.failed == 0)
-        assert (found["Effective"] == "–") is (runs.effective is None)
+        result = dict(zip(table.heads, row, strict=True))
+        assert result["Method"] == curve.method.name
+        assert result["Trials"] == ("–" if curve in small.once else f"{runs.budget:,}")
+        assert result["Evaluations"] == f"{runs.evaluations:,.0f}"
+        assert result["Time"].startswith("≈ ") is not runs.measured
+        assert (result["Failed"] == "–") is (runs.failed == 0)
+        assert (result["Effective"] == "–") is (runs.effective is None)
         for each, heading in STATISTICS.items():
             if not math.isfinite(runs.shares[each]):
-                assert found[heading] == "–"
-            elif not found[heading].startswith("≤"):
-                assert float(found[heading].replace(",", "")) == pytest.approx(
+                assert result[heading] == "–"
+            elif not result[heading].startswith("≤"):
+                assert float(result[heading].replace(",", "")) == pytest.approx(
                     100 * runs.shares[each], rel=0.06, abs=0.5
                 )
     assert table.at_right == set(range(1, len(table.heads)))
@@ -59,20 +59,20 @@ def test_the_floor_is_the_root_mean_square_of_the_errors_of_the_reference(small)
 
 
 def test_the_json_holds_the_numbers_of_the_study(small):
-    found = study_json(small)
-    assert found["reference"]["trials"] == small.reference.trials
-    assert found["recommended"] in {curve.method.key for curve in small.curves + small.engines}
-    for told, curve in zip(found["methods"], small.every, strict=True):
-        assert told["method"] == curve.method.key
-        for row, runs in zip(told["runs"], curve.lengths, strict=True):
+    result = study_json(small)
+    assert result["reference"]["trials"] == small.reference.trials
+    assert result["recommended"] in {curve.method.key for curve in small.curves + small.engines}
+    for messages, curve in zip(result["methods"], small.every, strict=True):
+        assert messages["method"] == curve.method.key
+        for row, runs in zip(messages["runs"], curve.lengths, strict=True):
             assert row["trials"] == (None if curve in small.once else runs.budget)
             for name, errors in row["errors"].items():
                 for each, values in errors.items():
                     value = runs.errors[name, each].value
                     assert values["rms"] == (value if math.isfinite(value) else None)
         drawn = curve not in small.once
-        assert (told["needs"] is not None) is drawn
-        assert (told["near_enough"] is not None) is (not drawn and bool(curve.answers))
+        assert (messages["needs"] is not None) is drawn
+        assert (messages["near_enough"] is not None) is (not drawn and bool(curve.answers))
 
 
 PERCENT, DATE, YES, WHOLE = Form(Kind.PERCENT), Form(Kind.DATE), Form(Kind.YES_NO), Form(Kind.WHOLE)

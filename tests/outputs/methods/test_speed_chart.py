@@ -44,11 +44,11 @@ def test_every_error_has_a_bar_that_holds_it(picture):
 
 def test_the_words_alone_answer(picture, timed):
     """Which is cheapest at 1 %, at 0.1 %, and which never gets there."""
-    found = choice(timed)
+    result = choice(timed)
     assert [mark.y for mark in picture.marks] == [1.0, pytest.approx(0.1)]
     asked, finer = (" ".join(mark.words) for mark in picture.marks)
     assert asked.startswith("1 %, as asked for; cheapest: ")
-    assert found.cheapest[0].method.name in asked
+    assert result.cheapest[0].method.name in asked
     assert finer.startswith("0.1 %; cheapest: ")
     message = {each.text for each in column_of(picture)}
     assert {"Taylor, first order: never", "Taylor, second order: never"} <= message
@@ -124,15 +124,15 @@ def test_the_workbook_has_the_same_chart(timed, picture):
 
 
 @given(
-    st.lists(st.floats(0.0, 1.0), min_size=1, max_size=15).map(lambda found: sorted(found, reverse=True)),
+    st.lists(st.floats(0.0, 1.0), min_size=1, max_size=15).map(lambda result: sorted(result, reverse=True)),
     st.floats(0.01, 0.06),
 )
 def test_labels_keep_their_order_and_distance(heights, apart):
-    found = spread(heights, apart, 0.0, 1.0)
-    assert all(above - below > apart - 1e-9 for above, below in pairwise(found))
-    assert -1e-9 <= min(found) <= max(found) <= 1.0 + 1e-9
+    result = spread(heights, apart, 0.0, 1.0)
+    assert all(above - below > apart - 1e-9 for above, below in pairwise(result))
+    assert -1e-9 <= min(result) <= max(result) <= 1.0 + 1e-9
     if len(heights) == 1:
-        assert found == pytest.approx(heights)
+        assert result == pytest.approx(heights)
 
 
 def test_labels_stay_where_they_have_room():

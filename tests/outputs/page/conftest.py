@@ -27,18 +27,18 @@ class Node:
     @property
     def text(self) -> str:
         """All text in it, with spaces where no line may be broken as others."""
-        found = "".join(child if isinstance(child, str) else child.text for child in self.children)
-        return found if self.tag in ("script", "style") else found.replace("\u00a0", " ")
+        result = "".join(child if isinstance(child, str) else child.text for child in self.children)
+        return result if self.tag in ("script", "style") else result.replace("\u00a0", " ")
 
     def all(self, tag: str | None = None, **attributes: str) -> list[Node]:
         wanted = {key.rstrip("_").replace("_", "-"): value for key, value in attributes.items()}
-        found = []
+        result = []
         for child in self.children:
             if isinstance(child, Node):
                 fits = all(child.attributes.get(key) == value for key, value in wanted.items())
-                found += [child] if fits and tag in (None, child.tag) else []
-                found += child.all(tag, **attributes)
-        return found
+                result += [child] if fits and tag in (None, child.tag) else []
+                result += child.all(tag, **attributes)
+        return result
 
     @property
     def numbers(self) -> list[float]:
@@ -106,9 +106,9 @@ def browser(tmp_path_factory):
     pytest.importorskip("selenium.webdriver")
     if reason := missing("chromium", "chromedriver"):
         pytest.skip(reason)
-    found = Browser(tmp_path_factory, requests=True)
-    yield found
-    found.quit()
+    result = Browser(tmp_path_factory, requests=True)
+    yield result
+    result.quit()
 
 
 @pytest.fixture

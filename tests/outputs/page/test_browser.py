@@ -103,8 +103,8 @@ class Chart:
         return (within or self.root).find_elements("css selector", selector)
 
     def one(self, selector):
-        (found,) = self.all(selector)
-        return found
+        (result,) = self.all(selector)
+        return result
 
     def drag(self, which, pixels):
         from selenium.webdriver import ActionChains
@@ -121,8 +121,8 @@ class Chart:
         self.one(f".boxes .{box}").send_keys(control, "a", control, delete, text, enter)
 
     def read(self):
-        found = self.browser.execute_script(READ, self.root)
-        return SimpleNamespace(**found | {"ends": tuple(map(float, found["ends"])), "count": float(found["count"])})
+        result = self.browser.execute_script(READ, self.root)
+        return SimpleNamespace(**result | {"ends": tuple(map(float, result["ends"])), "count": float(result["count"])})
 
     @property
     def ends(self):
@@ -152,10 +152,10 @@ def check(chart, values):
     assert read.count == count
     assert read.said.startswith(f"{words} of the accepted trials lie ")
     assert f": {count:,} of {values.size:,}; 95 % interval " in read.said
-    found = re.search(r"interval (\S+) to (\S+) %", read.said)
-    decimals = len(found[1].partition(".")[2])
-    assert found[1] == f"{100 * interval[0]:.{decimals}f}"
-    assert found[2] == f"{100 * interval[1]:.{decimals}f}"
+    result = re.search(r"interval (\S+) to (\S+) %", read.said)
+    decimals = len(result[1].partition(".")[2])
+    assert result[1] == f"{100 * interval[0]:.{decimals}f}"
+    assert result[2] == f"{100 * interval[1]:.{decimals}f}"
 
 
 def test_nothing_is_asked_of_a_network_and_nothing_could_be(chromium, opened, run, requests_of):
@@ -338,10 +338,10 @@ def test_the_pointer_is_told_what_it_is_at(at_rest, run):
     over = chart.one(".u-over")
     chart.browser.execute_script("arguments[0].scrollIntoView({block: 'center'})", over)
     ActionChains(chart.browser).move_to_element(over).perform()
-    found = re.fullmatch(r"(\S+) to below (\S+) ft: (\S+) trials, (\S+) %", chart.one(".readout").text)
-    inside = np.count_nonzero((values >= float(found[1])) & (values < float(found[2])))
-    assert int(found[3]) == inside
-    assert found[4] == f"{100 * inside / values.size:.2f}"
+    result = re.fullmatch(r"(\S+) to below (\S+) ft: (\S+) trials, (\S+) %", chart.one(".readout").text)
+    inside = np.count_nonzero((values >= float(result[1])) & (values < float(result[2])))
+    assert int(result[3]) == inside
+    assert result[4] == f"{100 * inside / values.size:.2f}"
     chart.one(".views input[value=cumulative]").click()
     ActionChains(chart.browser).move_to_element_with_offset(chart.one(".u-over"), 30, 0).perform()
     assert re.fullmatch(r"Up to \S+ ft: \S+ ± \S+ %", chart.one(".readout").text)
@@ -352,8 +352,8 @@ def test_shares_are_those_of_the_statistics(at_rest, trials):
     """For any count, as for the few of which one may be dragged to: the same value, error and interval."""
     counts = sorted({count for few in range(14) for count in (few, trials - few, trials * few // 13) if few <= trials})
     script = "return arguments[0].map(count => shareOf(count, arguments[1], arguments[2]))"
-    told = at_rest().browser.execute_script(script, counts, trials, t_quantile(math.inf, 0.95))
-    for count, share in zip(counts, told, strict=True):
+    messages = at_rest().browser.execute_script(script, counts, trials, t_quantile(math.inf, 0.95))
+    for count, share in zip(counts, messages, strict=True):
         expected = proportion(count, trials)
         known = (share["value"], share["error"], share["low"], share["high"])
         assert known == pytest.approx((expected.value, expected.error, *expected.interval), rel=1e-9, abs=1e-15)
@@ -410,9 +410,9 @@ def test_on_paper_is_what_is_open_and_nothing_is_to_be_pressed(at_rest):
     browser.execute_cdp_cmd("Emulation.setEmulatedMedia", {"media": "print"})
     try:
         for selector, displayed in (("details[open] summary", True), ("details:not([open]) summary", False)):
-            found = browser.find_elements("css selector", selector)
-            assert found
-            assert {each.is_displayed() for each in found} == {displayed}
+            result = browser.find_elements("css selector", selector)
+            assert result
+            assert {each.is_displayed() for each in result} == {displayed}
         for selector in ("nav", ".boxes", ".reset", ".views"):
             assert not browser.find_element("css selector", selector).is_displayed()
         for selector in (".chart canvas", ".certainty", "#statistics table", ".readout", ".overlay .legend"):
@@ -493,11 +493,11 @@ def test_bars_are_drawn_together_and_percentiles_marked(at_rest, run):
         exact = np.percentile(run["area"].values, float(percent))
         assert float(text) == pytest.approx(exact, abs=0.01 * np.ptp(run["area"].values))
     assert sorted(shown_at, key=float) == ["5", "50", "95"]
-    said = chart.one(".readout").text
+    message = chart.one(".readout").text
     chart.one("input.percentiles").send_keys(", half\t")
     assert "from 0 to 100" in chart.one(".fault").text
-    assert chart.one(".readout").text == said
-    assert "Mean" in said
+    assert chart.one(".readout").text == message
+    assert "Mean" in message
     chart.one("input.line[value=Mean]").click()
     assert "Mean" not in chart.one(".readout").text
     browser.execute_script("window.opened = null")  # nobody shall find it so

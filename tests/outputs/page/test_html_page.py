@@ -90,11 +90,11 @@ def test_the_record_is_the_whole_record(run, page_of, monkeypatch):
     leave_out_fits(monkeypatch)
     (section,) = page_of(run, command="xlmc simulate it").all("section", id="record")
     record = make_record(run, "xlmc simulate it")
-    found = {node.attributes["data-key"]: node.text for node in section.all("dd")}
+    result = {node.attributes["data-key"]: node.text for node in section.all("dd")}
     assert len(section.all("details")) == len(record.sections)
     for part in record.sections:
         for entry in part.entries:
-            shown = found[f"{part.key}.{entry.key}"]
+            shown = result[f"{part.key}.{entry.key}"]
             if isinstance(entry.value, (int, float)) and not isinstance(entry.value, bool):
                 assert float(shown) == entry.value
             elif isinstance(entry.value, str) and entry.value:
@@ -173,8 +173,8 @@ def test_where_a_page_cannot_go(run, tmp_path, name, message):
 @pytest.mark.parametrize(("forecasts", "trials"), [(1, 60_000), (50, 2000)])
 def test_large_runs_stay_small(make, monkeypatch, forecasts, trials):
     """The forecasts are multiples of the first, and the fits of all are as long as its own."""
-    fits, found = payload.fitted_curves, []
-    monkeypatch.setattr(payload, "fitted_curves", lambda *given: found or found.extend(fits(*given)) or found)
+    fits, result = payload.fitted_curves, []
+    monkeypatch.setattr(payload, "fitted_curves", lambda *given: result or result.extend(fits(*given)) or result)
     cells = {"A1": 0.5} | {f"B{n}": f"=A1*{n}/3" for n in range(1, forecasts + 1)}
     asked = [make.forecast(f"f{n}", f"B{n}") for n in range(1, forecasts + 1)]
     run = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0, base=0.5)], asked, trials=trials)
@@ -185,9 +185,9 @@ def test_statistics_stand_beside_each_chart(page_of, run):
     page = page_of(run)
     for article, result in zip(page.all("article", class_="forecast"), run.results.values(), strict=True):
         (table,) = article.all("table", class_="beside")
-        found = result.statistics
-        expected = [found.mean, found.standard_deviation, found.minimum]
-        expected += [*(found.percentiles[each] for each in (5.0, 25.0, 50.0, 75.0, 95.0)), found.maximum]
+        results = result.statistics
+        expected = [results.mean, results.standard_deviation, results.minimum]
+        expected += [*(results.percentiles[each] for each in (5.0, 25.0, 50.0, 75.0, 95.0)), results.maximum]
         values = [float(node.attributes["value"]) for node in table.all("data")]
         assert values == [each.value for each in expected]
 
@@ -197,8 +197,8 @@ def test_a_large_page_packs_what_it_shows_when_asked(run, page_of, monkeypatch):
     monkeypatch.setattr(html_page, "_LARGE", 0)
     packed = page_text(run)
     assert len(packed) < len(whole)
-    found = re.findall(r'data-packed="([^"]+)"', packed)
-    sections = [gzip.decompress(base64.b64decode(each)).decode() for each in found]
+    result = re.findall(r'data-packed="([^"]+)"', packed)
+    sections = [gzip.decompress(base64.b64decode(each)).decode() for each in result]
     assert len(sections) == 6
     assert [each for each in sections if each not in whole] == []
     data = re.search(r'id="payload">"([^"]+)"</script>', packed)[1]

@@ -17,9 +17,9 @@ EVIL = "</script><img src=x onerror=alert(1)>&amp;<!--\u2028"
 
 
 def test_the_trials_are_those_of_the_run(run, payload_of):
-    found = payload_of(run)
-    assert [each["name"] for each in found["forecasts"]] == list(run.results)
-    for each in found["forecasts"]:
+    results = payload_of(run)
+    assert [each["name"] for each in results["forecasts"]] == list(run.results)
+    for each in results["forecasts"]:
         result = run[each["name"]]
         counts = np.ones(len(each["values"]), int) if each["counts"] is None else each["counts"]
         assert np.repeat(each["values"], counts).tolist() == result.sample.x.tolist()
@@ -32,8 +32,8 @@ def test_the_trials_are_those_of_the_run(run, payload_of):
 
 def test_bins_are_those_of_the_sheet(run, book, payload_of):
     sheet = book["Bins"]
-    found = payload_of(run)["forecasts"]
-    for number, each in enumerate(found):
+    result = payload_of(run)["forecasts"]
+    for number, each in enumerate(result):
         rows = sheet.iter_rows(min_row=6, min_col=7 * number + 1, max_col=7 * number + 6, values_only=True)
         rows = [row for row in rows if isinstance(row[1], (int, float))]
         assert each["bins"]["edges"] == [*(row[1] for row in rows), rows[-1][2]]
@@ -42,19 +42,19 @@ def test_bins_are_those_of_the_sheet(run, book, payload_of):
 
 
 def test_marks_and_overlays(run, payload_of):
-    found = payload_of(run)
-    area, difference = found["forecasts"]
+    result = payload_of(run)
+    area, difference = result["forecasts"]
     assert [mark["label"] for mark in area["marks"]] == ["Mean", "Base case", "Threshold"]
     assert [mark["value"] for mark in area["marks"]] == [run["area"].mean.value, 16.0, 16.0]
     assert [mark["label"] for mark in difference["marks"]] == ["Mean", "Base case"]
-    assert found["overlays"] == [[0, 1]]  # both in ft
+    assert result["overlays"] == [[0, 1]]  # both in ft
 
 
 @pytest.mark.parametrize("name", ["none_accepted", "one_accepted"])
 def test_few_trials_make_few_charts(request, payload_of, name):
-    found = payload_of(request.getfixturevalue(name))
-    assert [each["trials"] for each in found["forecasts"]] == ([] if name == "none_accepted" else [1])
-    assert found["overlays"] == []
+    result = payload_of(request.getfixturevalue(name))
+    assert [each["trials"] for each in result["forecasts"]] == ([] if name == "none_accepted" else [1])
+    assert result["overlays"] == []
 
 
 def test_a_large_run_has_gaps_but_exact_ends(make, payload_of, monkeypatch):

@@ -66,8 +66,8 @@ def section(runs, page_of):
     first, second = runs
     with pytest.MonkeyPatch.context() as patch:
         leave_out_fits(patch)
-        (found,) = page_of(first, beside=second).all("section", id="second")
-    return found
+        (result,) = page_of(first, beside=second).all("section", id="second")
+    return result
 
 
 def test_both_answers_and_their_differences(runs, section):

@@ -9,15 +9,15 @@ from xlmc.outputs.page.sensitivity_sections import dependence, limits
 
 
 @pytest.fixture(scope="module")
-def found(run):
+def result(run):
     return sensitivities(run)
 
 
-def test_each_forecast_has_its_drawings_and_numbers(run, found, page_of):
+def test_each_forecast_has_its_drawings_and_numbers(run, result, page_of):
     (section,) = page_of(run).all("section", id="sensitivity")
     articles = section.all("article")
     assert [article.all("h3")[0].text for article in articles] == list(run.results)
-    for article, each in zip(articles, found.forecasts, strict=True):
+    for article, each in zip(articles, result.forecasts, strict=True):
         assert len(article.all("svg")) == 3
         labels = [svg.attributes["aria-label"].split(": ") for svg in article.all("svg")]
         assert [title for title, _ in labels] == [
@@ -31,10 +31,10 @@ def test_each_forecast_has_its_drawings_and_numbers(run, found, page_of):
             assert influence.explained.value in article.numbers
 
 
-def test_each_limit_is_moved(run, found, page_of):
+def test_each_limit_is_moved(run, result, page_of):
     (section,) = page_of(run).all("section", id="limits")
-    assert len(section.all("article")) == len(found.filter_limits) == 3
-    for article, limit in zip(section.all("article"), found.filter_limits, strict=True):
+    assert len(section.all("article")) == len(result.filter_limits) == 3
+    for article, limit in zip(section.all("article"), result.filter_limits, strict=True):
         assert limit.filter in article.all("h3")[0].text
         for point in limit.points:
             assert point.limit in article.numbers
@@ -45,9 +45,9 @@ def test_each_limit_is_moved(run, found, page_of):
 def test_nothing_to_say_is_no_section(make, page_of):
     assumptions = [make.uniform("a", "A1", 0.0, 1.0, frozen=True, base=0.5)]
     run = make.simulate({"A1": 0.5, "B1": "=A1*2"}, assumptions, [make.forecast("x", "B1")], trials=50)
-    found = sensitivities(run)
-    assert limits(found) == EMPTY
-    assert dependence(found, run.model.workbook) != EMPTY
+    result = sensitivities(run)
+    assert limits(result) == EMPTY
+    assert dependence(result, run.model.workbook) != EMPTY
     page = page_of(run)
     assert page.all("section", id="limits") == []
     assert "No assumption moves it." in page.all("section", id="sensitivity")[0].text

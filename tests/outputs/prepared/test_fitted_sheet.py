@@ -79,8 +79,8 @@ def test_correlations_are_those_of_columns_and_clear_ones_of_their_parameters(fi
 
 
 def test_without_a_bootstrap_parameters_are_numbers():
-    found = fit_columns({"Friction": measured()["Friction"]})
-    sheet = openpyxl.load_workbook(io.BytesIO(with_fits(None, found, "data.csv")))["Fitted"]
+    result = fit_columns({"Friction": measured()["Friction"]})
+    sheet = openpyxl.load_workbook(io.BytesIO(with_fits(None, result, "data.csv")))["Fitted"]
     (row,) = rows_of(sheet, "xlmc_assumptions")
     assert list(row) == ["Name", "Value", "Distribution", "Mean", "Std dev", "Source"]
     assert (row["Mean"], row["Std dev"]) == (pytest.approx(0.7, abs=0.02), pytest.approx(0.05, abs=0.01))
@@ -88,8 +88,8 @@ def test_without_a_bootstrap_parameters_are_numbers():
 
 
 def test_a_probability_stays_between_0_and_1():
-    found = fit_columns({"hit": [1.0] * 12 + [0.0] * 48, "x": measured(60)["Speed"]}, bootstraps=60)
-    sheet = openpyxl.load_workbook(io.BytesIO(with_fits(None, found, "data.csv")))["Fitted"]
+    result = fit_columns({"hit": [1.0] * 12 + [0.0] * 48, "x": measured(60)["Speed"]}, bootstraps=60)
+    sheet = openpyxl.load_workbook(io.BytesIO(with_fits(None, result, "data.csv")))["Fitted"]
     rows = {row["Name"]: row for row in rows_of(sheet, "xlmc_assumptions")}
     probability = next((row for name, row in rows.items() if name.startswith("hit: ")), None)
     assert probability is not None

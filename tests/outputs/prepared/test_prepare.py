@@ -76,8 +76,8 @@ def test_numbers_become_assumptions_and_last_formulas_forecasts(xlmc, book):
     outcome = xlmc("prepare", book)
     assert outcome.code == 0
     sheet = openpyxl.load_workbook("beam-prepared.xlsx")["xlmc"]
-    found = {sheet.cell(row, 1).value: (sheet.cell(row, 2).value, sheet.cell(row, 11).value) for row in (7, 8, 9)}
-    assert found == {"Load": ("=Beam!B1", "kN"), "Span": ("=Beam!B2", "m"), "Width": ("=Beam!C3", "mm")}
+    result = {sheet.cell(row, 1).value: (sheet.cell(row, 2).value, sheet.cell(row, 11).value) for row in (7, 8, 9)}
+    assert result == {"Load": ("=Beam!B1", "kN"), "Span": ("=Beam!B2", "m"), "Width": ("=Beam!C3", "mm")}
     assert [sheet.cell(7, column).value for column in (15, 16)] == ["Twice", "=Beam!B7"]
     assert "Unused" not in outcome.out
     assert xlmc("check", "beam-prepared.xlsx").code == 0
@@ -173,8 +173,8 @@ def test_a_row_is_frozen_until_a_distribution_is_typed(xlmc, book):
     assert xlmc("simulate", "beam-prepared.xlsx", "-n", 20_000, "-o", "run.json").code == 0
     forecast = json.loads(Path("run.json").read_text(encoding="utf-8"))["forecasts"][0]
     stress = 4.0 / 4 / 100 * 1000 * 2  # of one kN, twice
-    found = forecast["statistics"]["mean"]
-    assert found["value"] == pytest.approx(12 * stress, abs=4 * found["error"])
+    result = forecast["statistics"]["mean"]
+    assert result["value"] == pytest.approx(12 * stress, abs=4 * result["error"])
 
 
 def test_everything_else_stays_byte_for_byte(xlmc, book):
@@ -218,10 +218,10 @@ def test_charts_macros_and_names_of_excel_stay(xlmc, name):
 def test_a_second_time_it_adds_what_is_new_and_keeps_what_was_typed(xlmc, book):
     xlmc("prepare", book, "--in-place")
     edit(book, {"C7": "Uniform", "D7": 10, "F7": 14})
-    found = openpyxl.load_workbook(book)
-    found["Beam"]["D1"], found["Beam"]["D2"], found["Beam"]["C8"] = "Factor", "=B7*E2", "kN"
-    found["Beam"]["E2"] = 1.5
-    found.save(book)
+    result = openpyxl.load_workbook(book)
+    result["Beam"]["D1"], result["Beam"]["D2"], result["Beam"]["C8"] = "Factor", "=B7*E2", "kN"
+    result["Beam"]["E2"] = 1.5
+    result.save(book)
     outcome = xlmc("prepare", book, "--in-place")
     assert outcome.code == 0
     assert "Beam!E2" in outcome.out
@@ -257,11 +257,11 @@ MISTAKES = {
 }
 
 
-@pytest.mark.parametrize(("arguments", "said"), MISTAKES.values(), ids=MISTAKES)
-def test_a_mistake_is_one_message_and_nothing_is_written(xlmc, book, tmp_path, arguments, said):
+@pytest.mark.parametrize(("arguments", "message"), MISTAKES.values(), ids=MISTAKES)
+def test_a_mistake_is_one_message_and_nothing_is_written(xlmc, book, tmp_path, arguments, message):
     outcome = xlmc("prepare", book, *arguments)
     assert outcome.code == 2
-    assert all(each in outcome.err for each in said), outcome.err
+    assert all(each in outcome.err for each in message), outcome.err
     assert outcome.err.count("\n") == 1
     assert [path.name for path in tmp_path.iterdir()] == ["beam.xlsx"]
 

@@ -113,10 +113,10 @@ CHECKS = [
 
 
 def test_excel_offers_lists_and_warns_of_ends_that_are_turned_over(every):
-    found = every.data_validations.dataValidation
-    assert [(str(each.sqref), each.type, each.errorStyle, each.formula1) for each in found] == CHECKS
-    assert found[4].formula2 == "1"
-    assert {each.errorTitle for each in found} == {
+    result = every.data_validations.dataValidation
+    assert [(str(each.sqref), each.type, each.errorStyle, each.formula1) for each in result] == CHECKS
+    assert result[4].formula2 == "1"
+    assert {each.errorTitle for each in result} == {
         "Distribution", "High", "Std dev", "At most", "Correlation", "Root", "Setting"
     }  # fmt: skip
 

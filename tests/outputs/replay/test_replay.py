@@ -55,18 +55,18 @@ def test_the_case_study_is_identical_and_a_changed_cell_is_named(tmp_path):
     """The bar of this command."""
     path = tmp_path / "results.xlsx"
     Simulation(simulated(load(EXAMPLE), 20_000)).save(path)
-    found = replay(path)
-    assert found.identical
-    assert found.to_the_last_bit
-    assert (found.changes, found.environment, found.numbers) == ((), (), ())
+    result = replay(path)
+    assert result.identical
+    assert result.to_the_last_bit
+    assert (result.changes, result.environment, result.numbers) == ((), (), ())
     part, parts = read_workbook(path).sheets["Model"].part, read_parts(path.read_bytes())
     was, now = b"<f>SQRT(2*g*f_1*s_1)</f>", b"<f>SQRT(2*g*f_1*s_1)*1.001</f>"
     assert parts[part].count(was) == 1
     path.write_bytes(package_bytes(parts | {part: parts[part].replace(was, now)}))
-    found = replay(path)
-    assert not found.identical
-    assert found.changes == (Change("cell", "Model!D9", "=SQRT(2*g*f_1*s_1)", "=SQRT(2*g*f_1*s_1)*1.001"),)
-    assert {number.name for number in found.numbers} > {"Chevrolet delta-V: mean", "Nissan delta-V: low"}
+    result = replay(path)
+    assert not result.identical
+    assert result.changes == (Change("cell", "Model!D9", "=SQRT(2*g*f_1*s_1)", "=SQRT(2*g*f_1*s_1)*1.001"),)
+    assert {number.name for number in result.numbers} > {"Chevrolet delta-V: mean", "Nissan delta-V: low"}
 
 
 def test_a_result_that_is_shown_with_other_decimals_is_named(results, tmp_path):
@@ -76,11 +76,11 @@ def test_a_result_that_is_shown_with_other_decimals_is_named(results, tmp_path):
     code = re.search(r'formatCode="([^"]*0\.00)"', styles)[1]
     shown = tmp_path / "shown.xlsx"
     shown.write_bytes(package_bytes(parts | {"xl/styles.xml": styles.replace(f'"{code}"', '"0"').encode()}))
-    found = replay(shown)
-    assert not found.identical
-    assert found.shown.differences
-    assert {each.says for each in found.shown.differences} == {"shown with 0 decimals"}
-    assert {each.gives for each in found.shown.differences} == {"shown with 2 decimals"}
+    result = replay(shown)
+    assert not result.identical
+    assert result.shown.differences
+    assert {each.says for each in result.shown.differences} == {"shown with 0 decimals"}
+    assert {each.gives for each in result.shown.differences} == {"shown with 2 decimals"}
 
 
 RUNS = {
@@ -132,9 +132,9 @@ def test_every_kind_of_run_is_repeated_to_the_last_bit(run_of, tmp_path, kind):
     if kind not in AS_IN_THE_WORKBOOK:
         paths.append(Simulation(run).keep(tmp_path / "r.xlmcrun"))
     for path in paths:
-        found = replay(path)
-        assert found.to_the_last_bit, (path, found.changes, found.numbers)
-        assert found.record["counts.trials"] == run.trials
+        result = replay(path)
+        assert result.to_the_last_bit, (path, result.changes, result.numbers)
+        assert result.record["counts.trials"] == run.trials
 
 
 def refused_without(run, key, message):
@@ -234,12 +234,12 @@ def changed(edited, changes):
         for each, _ in changes.values():
             each(book)
 
-    found = replay(edited(change))
+    result = replay(edited(change))
     expected = [named for _, names in changes.values() for named in names]
-    assert not found.identical
-    assert len(found.changes) == len(expected)
-    assert set(found.changes) == set(expected)
-    return found
+    assert not result.identical
+    assert len(result.changes) == len(expected)
+    assert set(result.changes) == set(expected)
+    return result
 
 
 def test_changed_cells_are_named_with_old_and_new_content(edited):
@@ -256,9 +256,9 @@ def test_a_name_that_means_another_cell_and_a_table_that_lost_its_last_row(edite
         book.defined_names["Rate"].attr_text = "Inputs!$B$6"
         book["Inputs"].tables["xlmc_assumptions"].ref = "A1:F2"
 
-    found = replay(edited(change))
-    assert Change("defined name", "Rate", "Inputs!$B$5", "Inputs!$B$6") in found.changes
-    [table] = [each for each in found.changes if each.kind == "table"]
+    result = replay(edited(change))
+    assert Change("defined name", "Rate", "Inputs!$B$5", "Inputs!$B$6") in result.changes
+    [table] = [each for each in result.changes if each.kind == "table"]
     assert (table.where, table.old.split(":")[:2], table.new.split(":")[:2]) == (
         "xlmc_assumptions",
         ["Inputs!A1", "F3"],
@@ -272,16 +272,16 @@ def test_an_assumption_that_was_taken_out(edited):
             book["Inputs"][f"{column}3"] = None
         book["Model"]["A3"] = 1
 
-    found = replay(edited(change))
-    assert Change("assumption", "=length", "defined", None) in found.changes
+    result = replay(edited(change))
+    assert Change("assumption", "=length", "defined", None) in result.changes
 
 
 def test_a_workbook_that_cannot_be_run_any_more_still_names_the_cell(edited):
-    found = replay(edited(put("Model", "A1", "=NOSUCH(1)")))
-    assert found.changes == (Change("cell", "Model!A1", "=Inputs!B2*Inputs!B3*Rate", "=NOSUCH(1)"),)
-    assert "NOSUCH" in str(found.fault)
-    assert found.repeated is None
-    assert not found.identical
+    result = replay(edited(put("Model", "A1", "=NOSUCH(1)")))
+    assert result.changes == (Change("cell", "Model!A1", "=Inputs!B2*Inputs!B3*Rate", "=NOSUCH(1)"),)
+    assert "NOSUCH" in str(result.fault)
+    assert result.repeated is None
+    assert not result.identical
 
 
 def test_a_formula_that_was_filled_down_reads_as_it_does_in_its_cell(tmp_path, small_book):
@@ -294,8 +294,8 @@ def test_a_formula_that_was_filled_down_reads_as_it_does_in_its_cell(tmp_path, s
     cells[2, 1] = replace(cells[2, 1], formula=replace(cells[2, 1].formula, text="B4+C4", row=5, column=2))
     sheets = {name: workbook.sheets[name] for name in workbook.sheets}
     sheets["Model"] = replace(sheets["Model"], cells=cells)
-    found = repeating._replay(replace(workbook, sheets=sheets), old, None, 1, None, path)
-    assert found.to_the_last_bit
+    result = repeating._replay(replace(workbook, sheets=sheets), old, None, 1, None, path)
+    assert result.to_the_last_bit
 
 
 # A record that says something else than the run.
@@ -339,18 +339,18 @@ def test_another_processor_may_round_otherwise(run, against):
         "forecasts/area/mean": nearly(mean),
         "processor.vector_instructions": "NEON",
     }
-    found = against(changes)
-    assert found.identical
-    assert not found.to_the_last_bit
-    [number] = found.numbers
+    result = against(changes)
+    assert result.identical
+    assert not result.to_the_last_bit
+    [number] = result.numbers
     assert (number.name, number.close) == ("area: mean", True)
-    assert [change.where for change in found.environment] == ["vector_instructions"]
+    assert [change.where for change in result.environment] == ["vector_instructions"]
 
 
 def test_another_version_is_told_and_does_not_matter_where_the_numbers_are_the_same(against):
-    found = against({"software.numpy": "1.0"})
-    assert found.to_the_last_bit
-    assert [(each.kind, each.where, each.old) for each in found.environment] == [("software", "numpy", "1.0")]
+    result = against({"software.numpy": "1.0"})
+    assert result.to_the_last_bit
+    assert [(each.kind, each.where, each.old) for each in result.environment] == [("software", "numpy", "1.0")]
 
 
 DIFFERENT = {

@@ -48,14 +48,14 @@ def test_an_edited_number_is_named_with_what_the_run_gives(edited, drawn):
                 was[where], factors[where] = cell.value, factor
                 cell.value *= factor
 
-    found = replay(edited(change, drawn))
+    result = replay(edited(change, drawn))
     assert len(was) == 2 * len(SHEETS)
-    assert {str(each.where): each.gives for each in found.shown.differences} == was
-    assert len(found.shown.differences) == len(was)
-    for each in found.shown.differences:
+    assert {str(each.where): each.gives for each in result.shown.differences} == was
+    assert len(result.shown.differences) == len(was)
+    for each in result.shown.differences:
         assert each.says == pytest.approx(each.gives * factors[str(each.where)], rel=1e-15)
-    assert found.same_bits
-    assert not found.identical
+    assert result.same_bits
+    assert not result.identical
 
 
 EDITS = {
@@ -90,12 +90,12 @@ def test_any_other_edit_is_named(edited):
         for cell, forged in ((without, "=1-0.01"), (beside, "95 %")):
             says[f"Certainty!{cell.coordinate}"] = cell.value = forged
 
-    found = replay(edited(change))
-    assert {str(each.where): each.says for each in found.shown.differences} == says
-    assert len(found.shown.differences) == len(says) == len(EDITS) + len(RECORD) + 2
-    given = {str(each.where): each.gives for each in found.shown.differences if str(each.where) in gives}
+    result = replay(edited(change))
+    assert {str(each.where): each.says for each in result.shown.differences} == says
+    assert len(result.shown.differences) == len(says) == len(EDITS) + len(RECORD) + 2
+    given = {str(each.where): each.gives for each in result.shown.differences if str(each.where) in gives}
     assert {where: float if isinstance(value, float) else value for where, value in given.items()} == gives
-    assert not found.identical
+    assert not result.identical
 
 
 def test_the_smallest_edit_of_a_file_that_no_program_has_saved(results, tmp_path):
@@ -138,15 +138,15 @@ def test_an_untouched_sheet_of_trials_is_not_parsed(results, monkeypatch):
     parsed = []
 
     def counted(xml, entry, context):
-        found = parse_sheet(xml, entry, context)
-        parsed.append((entry.name, len(found.cells)))
-        return found
+        result = parse_sheet(xml, entry, context)
+        parsed.append((entry.name, len(result.cells)))
+        return result
 
     parse_sheet = lazy_sheets.parse_sheet
     monkeypatch.setattr(lazy_sheets, "parse_sheet", counted)
-    found = replay(results)
-    assert found.identical
-    assert "Trials" in found.shown.sheets
+    answer = replay(results)
+    assert answer.identical
+    assert "Trials" in answer.shown.sheets
     assert max(cells for name, cells in parsed if name == "Trials") < 60
 
 
@@ -163,14 +163,14 @@ def test_sheets_are_known_again_by_another_name_and_one_that_was_deleted_is_name
         for value, (low, _, certainty, *_) in zip([0.95, "=0.95"], typed_ranges(book), strict=True):
             low.value, certainty.value = 12, value
 
-    found = replay(edited(change))
-    differences = {(each.where.sheet, each.says) for each in found.shown.differences}
+    result = replay(edited(change))
+    differences = {(each.where.sheet, each.says) for each in result.shown.differences}
     assert differences == {("Old Statistics", 1e9), ("Certainty", 0.95), ("Certainty", "=0.95")}
-    assert "'Old Statistics'!D8" in {str(each.where) for each in found.shown.differences}
-    assert len(found.shown.differences) == len(differences)
-    assert {"Old Results", "Old Statistics", "Old Trials", "Old Bins"} <= set(found.shown.sheets)
-    assert found.shown.missing == ("Assumptions",)
-    assert not found.identical
+    assert "'Old Statistics'!D8" in {str(each.where) for each in result.shown.differences}
+    assert len(result.shown.differences) == len(differences)
+    assert {"Old Results", "Old Statistics", "Old Trials", "Old Bins"} <= set(result.shown.sheets)
+    assert result.shown.missing == ("Assumptions",)
+    assert not result.identical
 
 
 def test_a_range_that_somebody_typed_is_said_and_no_edit(edited):
@@ -178,9 +178,9 @@ def test_a_range_that_somebody_typed_is_said_and_no_edit(edited):
         row = next(row for row in book["Certainty"].iter_rows() if str(row[4].value).startswith("=SUMPRODUCT"))
         row[2].value = 1.25
 
-    found = replay(edited(change))
-    assert found.identical
-    [message] = found.shown.left_out
+    result = replay(edited(change))
+    assert result.identical
+    [message] = result.shown.left_out
     assert "holds a range that a person typed" in message
 
 
@@ -193,11 +193,11 @@ def test_what_a_program_counts_in_a_range_of_ones_own_is_recounted(results, run,
     values = values[~np.isnan(values)][:FEW]  # the rows of the sheet Trials
     share = np.mean((values >= 11) & (values <= high.value))
     shown = {low.coordinate: 11, where[0]: share, where[1]: math.sqrt(share * (1 - share) / values.size)}
-    found = replay(with_numbers(results, tmp_path, shown))
-    assert (found.identical, found.shown.differences) == (True, ())
-    assert "holds a range that a person typed" in found.shown.left_out[0]
-    found = replay(with_numbers(results, tmp_path, {**shown, where[0]: share + 0.01}))
-    assert [str(each.where) for each in found.shown.differences] == [f"Certainty!{where[0]}"]
+    result = replay(with_numbers(results, tmp_path, shown))
+    assert (result.identical, result.shown.differences) == (True, ())
+    assert "holds a range that a person typed" in result.shown.left_out[0]
+    result = replay(with_numbers(results, tmp_path, {**shown, where[0]: share + 0.01}))
+    assert [str(each.where) for each in result.shown.differences] == [f"Certainty!{where[0]}"]
 
 
 def with_numbers(results, folder, values):
@@ -224,9 +224,9 @@ def test_a_warning_that_was_taken_off_the_record_is_named(tmp_path, edited, smal
         row = next(row for row in book["Record"].iter_rows() if row[0].value == "warnings[0]")
         row[1].value = None
 
-    found = replay(edited(change, source))
-    assert "90" in found.shown.differences[0].gives
-    assert not found.identical
+    result = replay(edited(change, source))
+    assert "90" in result.shown.differences[0].gives
+    assert not result.identical
 
 
 @pytest.mark.parametrize("key", ["counts.accepted", "file.name", "end.by", "counts", "end"])
@@ -241,24 +241,24 @@ def test_results_in_the_workbook_itself_beside_a_sheet_of_their_name(small_book,
     book.create_sheet("Results")["A1"] = "mine"
     book.save(path)
     Simulation(simulated(load(path))).save(path, overwrite=True)
-    found = replay(path)
-    assert found.to_the_last_bit
-    assert "Results (2)" in found.shown.sheets
+    result = replay(path)
+    assert result.to_the_last_bit
+    assert "Results (2)" in result.shown.sheets
 
 
 @pytest.mark.parametrize("rows", [0, 20_000])
 def test_any_number_of_trials_on_the_sheet_of_a_file_that_was_renamed(run, tmp_path, rows):
     path = save(run, tmp_path / f"{rows}.xlsx", rows=rows, command="xlmc simulate small.xlsx")
-    found = replay(path.rename(tmp_path / f"another name {rows}.xlsx"))
-    assert found.to_the_last_bit
-    assert len(found.shown.sheets) >= 8
+    result = replay(path.rename(tmp_path / f"another name {rows}.xlsx"))
+    assert result.to_the_last_bit
+    assert len(result.shown.sheets) >= 8
 
 
 def test_of_another_model_no_sheet_is_compared(typed):
-    found = replay(typed({("Inputs", 2, 3): 1.25}))
-    assert found.shown.differences == ()
-    assert "the model is no longer the one" in found.shown.left_out[0]
-    assert not found.identical
+    result = replay(typed({("Inputs", 2, 3): 1.25}))
+    assert result.shown.differences == ()
+    assert "the model is no longer the one" in result.shown.left_out[0]
+    assert not result.identical
 
 
 def test_sheets_that_another_version_laid_out_otherwise_are_not_held_against_the_file(typed, monkeypatch):
@@ -266,9 +266,9 @@ def test_sheets_that_another_version_laid_out_otherwise_are_not_held_against_the
     now = xlmc.__version__
     for module in ("repeat", "shown_results", "versions"):
         monkeypatch.setattr(f"xlmc.outputs.replay.{module}.__version__", "9.9.9")
-    found = replay(path)
-    assert found.identical
-    assert found.shown.left_out == (f"the sheet Results, which xlmc {now} wrote differently from 9.9.9",)
+    result = replay(path)
+    assert result.identical
+    assert result.shown.left_out == (f"the sheet Results, which xlmc {now} wrote differently from 9.9.9",)
 
 
 def test_numbers_that_differ_from_those_of_another_version_are_named(typed, results, monkeypatch):
@@ -277,10 +277,10 @@ def test_numbers_that_differ_from_those_of_another_version_are_named(typed, resu
     path = typed({("Results", *at): 12.5})
     for module in ("repeat", "shown_results", "versions"):
         monkeypatch.setattr(f"xlmc.outputs.replay.{module}.__version__", "9.9.9")
-    found = replay(path)
-    assert not found.identical
-    assert [(each.where.sheet, each.says) for each in found.shown.differences] == [("Results", 12.5)]
-    assert found.shown.left_out == ()
+    result = replay(path)
+    assert not result.identical
+    assert [(each.where.sheet, each.says) for each in result.shown.differences] == [("Results", 12.5)]
+    assert result.shown.left_out == ()
 
 
 @pytest.mark.skipif(bool(missing("soffice")), reason=missing("soffice"))
@@ -288,9 +288,9 @@ def test_a_result_that_another_program_has_saved_with_fewer_digits(results, tmp_
     profile = f"-env:UserInstallation=file://{tmp_path}/profile"
     command = ["soffice", "--headless", profile, "--convert-to", "xlsx", "--outdir", str(tmp_path), str(results)]
     subprocess.run(command, check=True, capture_output=True, timeout=300)
-    found = replay(tmp_path / results.name)
-    assert (found.changes, found.shown.differences, found.shown.missing) == ((), (), ())
-    assert found.identical
+    result = replay(tmp_path / results.name)
+    assert (result.changes, result.shown.differences, result.shown.missing) == ((), (), ())
+    assert result.identical
 
 
 # Cells of the workbook itself.
@@ -337,9 +337,9 @@ def test_untouched_cells_that_show_results(own):
 
 def test_an_edited_result_in_a_cell_of_the_workbook_is_named(own, tmp_path):
     path, run = own
-    found = replay(with_values(path, tmp_path / "edited.xlsx", {"B1": ("n", "12.5"), "B3": ("n", "77")}))
+    result = replay(with_values(path, tmp_path / "edited.xlsx", {"B1": ("n", "12.5"), "B3": ("n", "77")}))
     mean = run["S!A2"].mean.value
-    assert [(str(d.where), d.says, d.gives) for d in found.shown.differences] == [
+    assert [(str(d.where), d.says, d.gives) for d in result.shown.differences] == [
         ("S!B1", 12.5, mean),
         ("S!B3", 77, ErrorCode.NA),
     ]
@@ -347,9 +347,9 @@ def test_an_edited_result_in_a_cell_of_the_workbook_is_named(own, tmp_path):
 
 def test_what_a_program_without_the_add_in_shows_is_no_edit(own, tmp_path):
     names = dict.fromkeys(("B1", "B2", "B3"), ("e", "#NAME?"))
-    found = replay(with_values(own[0], tmp_path / "saved.xlsx", names))
-    assert found.identical
-    assert "3 cells that show results of the run: a program without the add-in" in found.shown.left_out[0]
+    result = replay(with_values(own[0], tmp_path / "saved.xlsx", names))
+    assert result.identical
+    assert "3 cells that show results of the run: a program without the add-in" in result.shown.left_out[0]
 
 
 @pytest.mark.parametrize("name", ["collinear-head-on", "intersection"])
@@ -364,6 +364,6 @@ def test_a_shipped_book_that_openpyxl_has_saved_is_identical(tmp_path, name):
     for cell, value in rounded.items():
         cell.value = value
     book.save(path)
-    found = replay(path)
-    assert (found.changes, found.shown.differences, found.shown.missing) == ((), (), ())
-    assert found.identical
+    result = replay(path)
+    assert (result.changes, result.shown.differences, result.shown.missing) == ((), (), ())
+    assert result.identical

@@ -19,13 +19,13 @@ def lines(book, rows_of):
 
 def test_definition_and_draws_before_and_after_stand_together(run, lines):
     before, accepted, change = lines["width (ft)"]
-    found = filter_effect(run.prior["width"], run.inputs["width"])
+    result = filter_effect(run.prior["width"], run.inputs["width"])
     assert before[:5] == ["width (ft)", None, 2.0, "before", run.prior["width"].size]
     assert accepted[:5] == ["Uniform: Low 1, High 3", None, "S!A1", "accepted", run.accepted]
-    for line, part in ((before, found.prior), (accepted, found.accepted)):
+    for line, part in ((before, result.prior), (accepted, result.accepted)):
         estimates = [part.mean, part.standard_deviation, *part.percentiles.values()]
         assert line[5:15] == [number for estimate in estimates for number in (estimate.value, estimate.error)]
-    changes = [found.shift.value, found.shift.error, found.narrowing.value, found.narrowing.error]
+    changes = [result.shift.value, result.shift.error, result.narrowing.value, result.narrowing.error]
     assert change == ["tape", None, None, "change", None, *changes]
 
 
@@ -72,8 +72,8 @@ def test_correlations_are_listed(make, opened, row_of):
     sheet = opened(run, "Assumptions", "Curves")["Assumptions"]
     rows = [row for row in sheet.iter_rows(values_only=True) if row[0] == "a" and row[1] == "b"]
     assert [(row[5], row[7]) for row in rows] == [(0.7, 0.7)]
-    found = rank_correlation(run.inputs["a"], run.inputs["b"])
-    assert [row[9:11] for row in rows] == [(found.value, found.error)]
+    result = rank_correlation(run.inputs["a"], run.inputs["b"])
+    assert [row[9:11] for row in rows] == [(result.value, result.error)]
 
 
 def test_a_correlation_of_0_that_changes_nothing_is_not_listed(make, opened):
@@ -111,14 +111,14 @@ def test_the_sheets_of_a_run_in_replicates(make, opened, rows_of):
     assert any("independent trials; the error of these samples is hardly ever larger" in str(text) for text in results)
     texts = [row[0] for row in rows_of(book["Assumptions"]) if row]
     assert any(str(text).startswith("Before filtering, ± is that of independent trials") for text in texts)
-    found = filter_effect(run.prior["b"], run.inputs["b"], run.replicate)
-    assert found.accepted.mean.error < filter_effect(run.prior["b"], run.inputs["b"]).accepted.mean.error
+    result = filter_effect(run.prior["b"], run.inputs["b"], run.replicate)
+    assert result.accepted.mean.error < filter_effect(run.prior["b"], run.inputs["b"]).accepted.mean.error
     line = next(
         row
         for row in rows_of(book["Assumptions"])
-        if len(row) > 6 and row[3] == "accepted" and row[5] == found.accepted.mean.value
+        if len(row) > 6 and row[3] == "accepted" and row[5] == result.accepted.mean.value
     )
-    assert line[6] == found.accepted.mean.error
+    assert line[6] == result.accepted.mean.error
 
 
 def test_small_charts_show_the_shapes_of_the_draws(run, book):

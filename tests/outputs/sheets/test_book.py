@@ -54,8 +54,8 @@ def test_another_run_threads_and_results_on_disk_do_not_change_a_byte(run, packa
 def test_draws_that_were_not_kept_are_told(run, opened, rows_of):
     again = simulated(run.model, keep_inputs=100)
     book = opened(again, "Assumptions", "Curves", "Trials", "Record")
-    told = [str(row[0]) for row in rows_of(book["Assumptions"]) if row]
-    assert f"Accepted: the first 100 of {again.accepted:,} accepted trials." in told
+    messages = [str(row[0]) for row in rows_of(book["Assumptions"]) if row]
+    assert f"Accepted: the first 100 of {again.accepted:,} accepted trials." in messages
     assert f"Only the first 100 of {again.accepted:,} accepted trials stand here." in str(rows_of(book["Trials"]))
     assert ["counts.inputs_kept", "Accepted trials whose draws are kept", 100] in rows_of(book["Record"])
 
@@ -138,8 +138,8 @@ def test_a_command_imports_what_it_needs(small_book, typed, absent):
         "try:\n    main()\nexcept SystemExit as end:\n    assert not end.code, end.code\n"
         f"print('loaded:', [name for name in {absent} if name in sys.modules])"
     )
-    found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, encoding="utf-8")
-    assert found.stdout.splitlines()[-1] == "loaded: []", found.stderr
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False, encoding="utf-8")
+    assert result.stdout.splitlines()[-1] == "loaded: []", result.stderr
 
 
 def test_the_case_stands_on_top_of_every_printed_page(small_book, tmp_path):

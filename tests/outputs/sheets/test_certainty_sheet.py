@@ -26,12 +26,12 @@ def lines(sheet, heading):
     rows = list(sheet.iter_rows(values_only=True))
     start = next(number for number, row in enumerate(rows) if row[0] == heading)
     first = next(number for number, row in enumerate(rows[start:], start) if row[0] == "Forecast") + 1
-    found = []
+    result = []
     for row in rows[first:]:
         if row[0] is None:
             break
-        found.append(row)
-    return found
+        result.append(row)
+    return result
 
 
 def test_every_sentence_stands_there(run, sheets):

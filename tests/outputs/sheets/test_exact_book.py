@@ -42,8 +42,8 @@ INSIDE = {
 def test_xlsxwriter_has_the_inner_methods_that_are_overridden_and_called():
     """Where this fails with a newer XlsxWriter, look at each of them before its bound in pyproject.toml is moved."""
     for kind, methods in INSIDE.items():
-        found = {name: " ".join(inspect.signature(getattr(kind, name)).parameters) for name in methods}
-        assert found == methods, kind
+        result = {name: " ".join(inspect.signature(getattr(kind, name)).parameters) for name in methods}
+        assert result == methods, kind
     assert CellNumberTuple._fields == ("number", "format")
     assert CellStringTuple._fields == ("string", "format")
     sheet = Workbook(io.BytesIO()).add_worksheet()
@@ -142,8 +142,8 @@ def test_runs_of_numbers_among_cells_are_what_xlsxwriter_writes_cell_by_cell(cel
 def test_every_number_of_a_run_is_read_back_as_the_same_number(numbers):
     with ExactBook() as book:
         book.add_worksheet().write_numbers(0, 0, numbers, book.add_format({}))
-    found = book.parts["xl/worksheets/sheet1.xml"].split(b"<v>")[1:]
-    assert [float(each.partition(b"</v>")[0]).hex() for each in found] == [number.hex() for number in numbers]
+    result = book.parts["xl/worksheets/sheet1.xml"].split(b"<v>")[1:]
+    assert [float(each.partition(b"</v>")[0]).hex() for each in result] == [number.hex() for number in numbers]
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -192,8 +192,8 @@ def test_a_chart_of_a_wide_sheet_looks_at_its_own_columns():
     for column in range(300):
         sheet.write_number(1, column, column)
     sheet.write_numbers(0, 4, [0.5, 1.5], book.add_format())
-    found = sheet._with_runs(0, 3, 1, 5)
-    assert {row: {column: cell.number for column, cell in cells.items()} for row, cells in found.items()} == {
+    result = sheet._with_runs(0, 3, 1, 5)
+    assert {row: {column: cell.number for column, cell in cells.items()} for row, cells in result.items()} == {
         0: {4: 0.5},
         1: {3: 3, 4: 1.5, 5: 5},
     }

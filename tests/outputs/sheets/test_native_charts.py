@@ -83,9 +83,9 @@ def test_a_change_of_an_answer_without_a_range_is_no_part_of_it(make):
     )
     from xlmc.analysis.studies.sensitivity import sensitivities
 
-    found = sensitivities(run)
-    forecasts = {each.forecast: each for each in found.forecasts}
-    chart = limit_chart_of_ranges(*found.filter_limits, forecasts, [0])
+    result = sensitivities(run)
+    forecasts = {each.forecast: each for each in result.forecasts}
+    chart = limit_chart_of_ranges(*result.filter_limits, forecasts, [0])
     assert all(point[1] != point[1] for point in chart.data.lines[0].points)
     drawn, _ = written(chart.data)
     assert len(drawn.series) == 1

@@ -36,8 +36,10 @@ def scatter_columns(packed):
     """The references of x and y of every scatter chart of trials."""
     with zipfile.ZipFile(io.BytesIO(packed)) as package:
         charts = [package.read(name).decode() for name in package.namelist() if "/charts/chart" in name]
-    found = [re.findall(r"<c:[xy]Val><c:numRef><c:f>([^<]*)", chart) for chart in charts if "<c:scatterChart>" in chart]
-    return [each for each in found if len(each) == 2 and "Filter limits" not in each[0]]
+    result = [
+        re.findall(r"<c:[xy]Val><c:numRef><c:f>([^<]*)", chart) for chart in charts if "<c:scatterChart>" in chart
+    ]
+    return [each for each in result if len(each) == 2 and "Filter limits" not in each[0]]
 
 
 def test_scatter_charts_draw_the_first_trials_of_the_sheet(run, package_of, book):
@@ -70,8 +72,8 @@ def test_one_forecast_has_no_pairs_and_many_have_the_first_ones(make, opened, on
     cells = {"A1": 0.5} | {f"B{n}": f"=A1*{n}" for n in range(1, 8)}
     run = make.simulate(cells, [make.uniform("a", "A1", 0.0, 1.0, base=0.5)], forecasts, trials=50)
     book = opened(run, *DRAWN)
-    told = [str(cell.value) for cell in book["Pairs"]["A"]]
-    assert "At most 15 pairs of forecasts are here, the first ones of the workbook." in told
+    messages = [str(cell.value) for cell in book["Pairs"]["A"]]
+    assert "At most 15 pairs of forecasts are here, the first ones of the workbook." in messages
     assert len(book["Pairs"]._charts) == 15
 
 
@@ -79,10 +81,10 @@ def test_one_forecast_has_no_pairs_and_many_have_the_first_ones(make, opened, on
     ("lowest", "highest"), [(18.9, 26.6), (-3.0, 4.0), (1e-9, 3e-9), (1.2e6, 3.8e6), (0.0, 1.0), (99.99, 100.01)]
 )
 def test_axes_have_round_limits_about_what_they_show(lowest, highest):
-    found = bounds(lowest, highest)
-    step = found["major_unit"]
-    steps = (found["max"] - found["min"]) / step
-    assert found["min"] <= lowest < highest <= found["max"]
+    result = bounds(lowest, highest)
+    step = result["major_unit"]
+    steps = (result["max"] - result["min"]) / step
+    assert result["min"] <= lowest < highest <= result["max"]
     assert 4 <= round(steps) <= 12
     assert steps == pytest.approx(round(steps), abs=1e-6)
     assert float(f"{step:.6e}"[0]) in (1.0, 2.0, 5.0)

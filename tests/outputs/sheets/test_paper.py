@@ -14,9 +14,9 @@ def test_what_fits_is_one_page_in_the_direction_of_the_larger_letters():
 
 
 def test_letters_shrink_before_a_page_is_begun_but_never_below_what_can_be_read():
-    found = lay_out(500.0, [15.0] * 60, [])
-    assert found.whole
-    assert SMALLEST <= found.scale < 1.0
+    result = lay_out(500.0, [15.0] * 60, [])
+    assert result.whole
+    assert SMALLEST <= result.scale < 1.0
     longer = lay_out(500.0, [15.0] * 100, list(range(0, 100, 10)))
     assert not longer.whole
     assert longer.breaks == (40, 80)
@@ -26,9 +26,9 @@ def test_letters_shrink_before_a_page_is_begun_but_never_below_what_can_be_read(
 
 @pytest.mark.parametrize(("width", "upright"), [(MOST_UPRIGHT, True), (MOST_ACROSS, False)])
 def test_the_widest_sheets_have_the_smallest_letters(width, upright):
-    found = lay_out(width, [15.0] * 200, list(range(0, 200, 5)))
-    assert found.upright == upright
-    assert found.scale == pytest.approx(SMALLEST)
+    result = lay_out(width, [15.0] * 200, list(range(0, 200, 5)))
+    assert result.upright == upright
+    assert result.scale == pytest.approx(SMALLEST)
 
 
 def test_a_page_takes_as_many_whole_parts_as_it_has_room_for():
@@ -44,6 +44,6 @@ def test_a_part_that_has_no_room_on_a_page_counts_as_several():
 
 
 def test_a_sheet_wider_than_any_page_is_printed_as_large_as_it_can_be():
-    found = lay_out(2_000.0, [15.0] * 10, [])
-    assert not found.upright
-    assert found.scale < SMALLEST
+    result = lay_out(2_000.0, [15.0] * 10, [])
+    assert not result.upright
+    assert result.scale < SMALLEST

@@ -38,8 +38,8 @@ def test_every_entry_is_read_back_by_its_key(run, read_back):
 def test_every_row_of_a_table_is_read_back(run, read_back):
     record = make_record(run)
     for section in record.sections:
-        for expected, found in zip(record.rows(section.key), read_back.get(section.key, []), strict=True):
-            assert found == {key: "–" if value in (None, "") else value for key, value in expected.items()}
+        for expected, result in zip(record.rows(section.key), read_back.get(section.key, []), strict=True):
+            assert result == {key: "–" if value in (None, "") else value for key, value in expected.items()}
 
 
 def test_commands_and_hashes_are_in_a_fixed_width_font(book):

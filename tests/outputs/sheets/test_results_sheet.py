@@ -22,17 +22,17 @@ def test_table_2_holds_the_simulations_numbers(run, book, row_of):
         "±",
         "Base case",
     ]
-    found = run["area"].statistics
-    low, high = found.central
-    above = found.probability_above
+    result = run["area"].statistics
+    low, high = result.central
+    above = result.probability_above
     assert row_of(sheet, "area") == [
         "area",
         "ft",
         run.accepted,
-        found.mean.value,
-        found.mean.error,
-        found.standard_deviation.value,
-        found.standard_deviation.error,
+        result.mean.value,
+        result.mean.error,
+        result.standard_deviation.value,
+        result.standard_deviation.error,
         low.value,
         low.error,
         high.value,

@@ -136,10 +136,10 @@ def test_a_file_that_is_open_is_refused(case, tmp_path):
 
 def test_the_record_names_the_file_the_run_came_from(case, short_books, book, tmp_path):
     record = rows(save(case, tmp_path / "out.xlsx", command="xlmc simulate scene.xlsx"), "Record")
-    found = {row[0]: row[2] for row in record if len(row) > 2 and row[0]}
-    assert found["file.sha256"] == hashlib.sha256(book.read_bytes()).hexdigest()
-    assert found["run.command"] == "xlmc simulate scene.xlsx"
-    assert found["run.repeat"] == "xlmc simulate scene.xlsx --trials 400 --seed 7"
+    result = {row[0]: row[2] for row in record if len(row) > 2 and row[0]}
+    assert result["file.sha256"] == hashlib.sha256(book.read_bytes()).hexdigest()
+    assert result["run.command"] == "xlmc simulate scene.xlsx"
+    assert result["run.repeat"] == "xlmc simulate scene.xlsx --trials 400 --seed 7"
 
 
 def test_a_simulation_saves_itself(case, short_books, tmp_path):

@@ -24,7 +24,7 @@ def packed(run, package_of):
 
 
 @pytest.fixture(scope="module")
-def found(run):
+def result(run):
     return sensitivities(run)
 
 
@@ -53,8 +53,8 @@ def drawn(book, xml, part):
     return values
 
 
-def test_influences_stand_in_the_table(book, found, row_of):
-    for forecast in found.forecasts:
+def test_influences_stand_in_the_table(book, result, row_of):
+    for forecast in result.forecasts:
         for each in forecast.influences:
             row = next(
                 row
@@ -72,7 +72,7 @@ def test_influences_stand_in_the_table(book, found, row_of):
             )
 
 
-def test_charts_draw_the_columns_of_their_names(book, found, charts):
+def test_charts_draw_the_columns_of_their_names(book, result, charts):
     picks = {
         "Variance explained": lambda each: each.explained,
         "Dependence": lambda each: each.dependence,
@@ -80,15 +80,15 @@ def test_charts_draw_the_columns_of_their_names(book, found, charts):
         "Contribution to variance (approximate)": lambda each: each.contribution,
     }
     for title, pick in picks.items():
-        assert len(charts[title]) == len(found.forecasts)
-        for xml, forecast in zip(charts[title], found.forecasts, strict=True):
+        assert len(charts[title]) == len(result.forecasts)
+        for xml, forecast in zip(charts[title], result.forecasts, strict=True):
             assert drawn(book, xml, "cat") == [[each.assumption for each in forecast.influences]]
             assert drawn(book, xml, "val") == [[pick(each).value for each in forecast.influences]]
             assert drawn(book, xml, "plus") == [[pick(each).error for each in forecast.influences]]
 
 
-def test_tornado_and_spider_draw_changes_from_the_base_case(book, found, charts):
-    for tornado, spider, forecast in zip(charts["Tornado"], charts["Spider"], found.forecasts, strict=True):
+def test_tornado_and_spider_draw_changes_from_the_base_case(book, result, charts):
+    for tornado, spider, forecast in zip(charts["Tornado"], charts["Spider"], result.forecasts, strict=True):
         changes = [[answer - forecast.base for answer in bar.answers] for bar in forecast.bars]
         assert drawn(book, tornado, "val") == [[each[0] for each in changes], [each[-1] for each in changes]]
         assert drawn(book, spider, "val") == changes
@@ -97,7 +97,7 @@ def test_tornado_and_spider_draw_changes_from_the_base_case(book, found, charts)
 
 
 def test_axes_have_titles_and_charts_a_description(packed, charts):
-    for each in (xml for found in charts.values() for xml in found):
+    for each in (xml for result in charts.values() for xml in result):
         assert each.count("<c:title>") >= 2
     with zipfile.ZipFile(io.BytesIO(packed)) as package:
         drawings = [
@@ -124,9 +124,9 @@ def test_lines_are_straight_and_shares_end_at_one(packed, charts):
 def test_the_minus_sign_of_an_axis_is_one_that_no_program_parts_from_its_number(packed):
     with zipfile.ZipFile(io.BytesIO(packed)) as package:
         xmls = [package.read(name).decode() for name in package.namelist() if name.startswith("xl/charts/chart")]
-    formats = {found for xml in xmls for found in re.findall(r'<c:numFmt formatCode="([^"]*)" sourceLinked="0"', xml)}
+    formats = {result for xml in xmls for result in re.findall(r'<c:numFmt formatCode="([^"]*)" sourceLinked="0"', xml)}
     assert formats
-    assert {found for found in formats if ";&quot;−&quot;" not in found} == set()
+    assert {results for results in formats if ";&quot;−&quot;" not in results} == set()
 
 
 def test_no_more_than_noise_is_pale(make, opened):
@@ -158,13 +158,13 @@ def test_sobol_indices_stand_where_they_are_right(make, opened):
 
 
 def test_it_is_said_why_there_are_no_sobol_indices(book):
-    told = [str(row[0]) for row in book["Sensitivity"].iter_rows(values_only=True)]
-    assert any(text.startswith("Sobol indices are not given: the filters reject trials") for text in told)
+    messages = [str(row[0]) for row in book["Sensitivity"].iter_rows(values_only=True)]
+    assert any(text.startswith("Sobol indices are not given: the filters reject trials") for text in messages)
 
 
-def test_limits_stand_in_their_tables(book, found):
+def test_limits_stand_in_their_tables(book, result):
     rows = list(book["Filter limits"].iter_rows(values_only=True))
-    for limit in found.filter_limits:
+    for limit in result.filter_limits:
         for point in limit.points:
             share = (point.limit, point.trials, point.acceptance.value, point.acceptance.error)
             assert any(row[1:5] == share for row in rows)
@@ -176,13 +176,13 @@ def test_limits_stand_in_their_tables(book, found):
             assert any(row[0] == slope.forecast and row[1:3] == (slope.mean.value, slope.mean.error) for row in rows)
 
 
-def test_limit_charts_draw_them(book, found, charts):
-    for xml, limit in zip(charts["Change of each mean"], found.filter_limits, strict=True):
+def test_limit_charts_draw_them(book, result, charts):
+    for xml, limit in zip(charts["Change of each mean"], result.filter_limits, strict=True):
         limits = [point.limit for point in limit.points]
-        assert drawn(book, xml, "xVal") == [limits] * len(found.forecasts)
+        assert drawn(book, xml, "xVal") == [limits] * len(result.forecasts)
         changes = [[point.answers[place].change.value for point in limit.points] for place in range(2)]
         assert drawn(book, xml, "yVal") == changes
-    for xml, limit in zip(charts["Share of trials accepted"], found.filter_limits, strict=True):
+    for xml, limit in zip(charts["Share of trials accepted"], result.filter_limits, strict=True):
         assert drawn(book, xml, "yVal") == [[point.acceptance.value for point in limit.points]]
 
 

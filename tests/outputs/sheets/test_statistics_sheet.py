@@ -40,14 +40,14 @@ def test_forecasts_stand_side_by_side_with_their_units(book, row_of):
 
 
 def test_percentiles_the_central_range_and_the_threshold_stand_below(run, book, row_of):
-    sheet, found = book["Statistics"], run["area"].statistics
-    for percent, estimate in found.percentiles.items():
+    sheet, result = book["Statistics"], run["area"].statistics
+    for percent, estimate in result.percentiles.items():
         assert row_of(sheet, f"{percent:g} %")[1:5] == _expected(estimate)
-    for end, estimate in zip(("from", "to"), found.central, strict=True):
+    for end, estimate in zip(("from", "to"), result.central, strict=True):
         assert row_of(sheet, f"Central range {end}")[1:5] == _expected(estimate)
     assert row_of(sheet, "Central range, share")[1::4] == [0.51, 0.51]
     assert row_of(sheet, "Threshold")[1:] == [16.0]
-    assert row_of(sheet, "Above threshold")[1:] == _expected(found.probability_above)
+    assert row_of(sheet, "Above threshold")[1:] == _expected(result.probability_above)
 
 
 def test_extremes_show_the_digits_of_the_mean(book):

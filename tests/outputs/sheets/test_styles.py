@@ -31,10 +31,10 @@ def test_an_axis_ends_at_round_numbers_about_its_values(lowest, highest, low, hi
 @pytest.mark.parametrize("span", [1.0, 1.7, 2.3, 4.9, 7.7, 9.99])
 def test_an_axis_has_four_to_eleven_steps_and_holds_its_values(span, exponent):
     lowest, highest = 0.37 * 10.0**exponent, (0.37 + span) * 10.0**exponent
-    found = bounds(lowest, highest)
-    assert found["min"] <= lowest <= highest <= found["max"]
-    assert 4 <= round((found["max"] - found["min"]) / found["major_unit"]) <= 12
-    mantissa = found["major_unit"] / 10.0 ** math.floor(math.log10(found["major_unit"] * 1.0000001))
+    result = bounds(lowest, highest)
+    assert result["min"] <= lowest <= highest <= result["max"]
+    assert 4 <= round((result["max"] - result["min"]) / result["major_unit"]) <= 12
+    mantissa = result["major_unit"] / 10.0 ** math.floor(math.log10(result["major_unit"] * 1.0000001))
     assert min(abs(mantissa - each) for each in (1.0, 2.0, 5.0)) < 1e-6
 
 

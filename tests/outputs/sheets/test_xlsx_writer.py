@@ -49,8 +49,8 @@ def written():
             numbers = Page(book.add_worksheet("N", ExactSheet), styles, ()) if charted else None
             write_blocks(page, blocks, Charting(book, lambda: numbers) if charted else None, **more)
             row = page.row
-        found = openpyxl.load_workbook(packed)
-        return found["P"], row
+        result = openpyxl.load_workbook(packed)
+        return result["P"], row
 
     return write
 
@@ -152,9 +152,9 @@ def test_a_name_and_a_long_text_reach_over_the_other_columns(written):
     ],
 )
 def test_columns_are_as_wide_as_their_longest_text_up_to_a_limit(blocks, widths):
-    found = dict(enumerate(sheet_widths(blocks)))
+    result = dict(enumerate(sheet_widths(blocks)))
     usual = dict(enumerate([44.0, *[17.0] * 7]))
-    assert found == usual | widths
+    assert result == usual | widths
 
 
 @pytest.mark.parametrize(
@@ -169,15 +169,15 @@ def test_lines_and_bars_are_charts_of_excels_own(written, data, charts):
     blocks = (Figure(Chart("", "x", data, "a picture"), "It shows."), Paragraph("after"))
     sheet, row = written(blocks, charted=True)
     assert len(sheet._charts) == charts
-    said = _cells(sheet)
+    message = _cells(sheet)
     if charts:
         [chart] = sheet._charts
         bottom = chart.anchor.to.row  # the row that the chart ends in, from 0
-        assert list(said.values()) == ["It shows.", "after"]
+        assert list(message.values()) == ["It shows.", "after"]
         assert row - 2 - bottom in (0, 1)
-        assert f"A{row}" in said
+        assert f"A{row}" in message
     else:
-        assert said == {"A1": "a picture.", "A2": "It shows.", "A3": "after"}
+        assert message == {"A1": "a picture.", "A2": "It shows.", "A3": "after"}
 
 
 def test_pictures_are_described_in_words_where_there_are_no_charts(written):

@@ -121,8 +121,8 @@ class Decided(Shown):
         combination.
         """
         states = (self.base, *(each.answers for each in self.combinations))
-        found = {_numbers(of_forecast(each, forecast)) for each in states}
-        return len(found) > 1
+        result = {_numbers(of_forecast(each, forecast)) for each in states}
+        return len(result) > 1
 
     def losing(self, forecast: str) -> list[Combination]:
         """Return the combinations with which errors take so many trials from a forecast that its mean says little."""
@@ -145,8 +145,8 @@ class Decided(Shown):
             return Best(first, mean, None, None)
         second = rest[0][0]
         apart = answers_of(first.answers.run, first.answers.scenario, second.answers.run)
-        found = next(each for each in apart.forecasts if each.forecast.name == forecast)
-        return Best(first, mean, second, found.differences["mean"])
+        answer = next(each for each in apart.forecasts if each.forecast.name == forecast)
+        return Best(first, mean, second, answer.differences["mean"])
 
 
 def _mean(combination: Combination, forecast: str) -> Estimate:
@@ -198,7 +198,7 @@ def decide(
             f"The decisions have {count_text(count)} combinations, and a table at most {count_text(MOST_COMBINATIONS)}"
         )
         raise SimulationError(message, hint="Give larger steps in xlmc_decisions, or fewer decisions")
-    found: list[Combination] = []
+    combinations: list[Combination] = []
     impossible: dict[tuple[float, ...], str] = {}
     with Steps(tell) as steps:
         steps.expect(count + 1)
@@ -213,9 +213,9 @@ def decide(
             except XlmcError as error:
                 impossible[values] = str(error).partition("\n")[0]
             else:
-                found.append(Combination(values, answers))
+                combinations.append(Combination(values, answers))
         ended = steps.why_ended
-    return Decided(run, answers_of(run, None, run), decisions, tuple(found), impossible, ended)
+    return Decided(run, answers_of(run, None, run), decisions, tuple(combinations), impossible, ended)
 
 
 def _chosen(model: CompiledModel, names: Iterable[str]) -> tuple[Decision, ...]:

@@ -93,17 +93,17 @@ def derivatives(
     nodes |= {cell: lowering.cell(cell) for cell in targets}
     notes = Notes()
     points = np.column_stack([*draws.values()]) if draws else np.empty((n, 0))
-    found = _Found(n, len(draws), order, set(nodes.values()))
+    result = _Found(n, len(draws), order, set(nodes.values()))
     portion = _portion(lowering, len(draws), order)
     for start in range(0, n, portion):
         part = {name: values[start : start + portion] for name, values in draws.items()}
         try:
-            _sweep(lowering, found, part, order, notes, start, points, movements)
+            _sweep(lowering, result, part, order, notes, start, points, movements)
         except UnequalSizes:
             for trial in range(start, min(start + portion, n)):
                 one = {name: values[trial : trial + 1] for name, values in draws.items()}
-                _sweep(lowering, found, one, order, notes, trial, points, movements)
-    by_cell = {cell: found.derivative(cell, node) for cell, node in nodes.items()}
+                _sweep(lowering, result, one, order, notes, trial, points, movements)
+    by_cell = {cell: result.derivative(cell, node) for cell, node in nodes.items()}
     concerned = np.flatnonzero(np.any([np.isnan(d.gradient).any(axis=1) for d in by_cell.values()], axis=0))
     whose = owners(lowering)
     return Derivatives(
@@ -178,7 +178,7 @@ def _spread_out(value: Value, jet: Jet, into: Floats) -> None:
 
 def _sweep(
     lowering: Lowering,
-    found: _Found,
+    result: _Found,
     draws: Mapping[str, Floats],
     order: int,
     notes: Notes,
@@ -188,9 +188,9 @@ def _sweep(
 ) -> None:
     stop = start + next((values.size for values in draws.values()), 1)
     moving = set() if movements is None else {*movements.nodes.values()}
-    for node, value, jet in sweep_forward(lowering.dag, found.nodes | moving, draws, order, notes, start):
-        if node in found.nodes:
-            found.add(node, value, jet, start, stop)
+    for node, value, jet in sweep_forward(lowering.dag, result.nodes | moving, draws, order, notes, start):
+        if node in result.nodes:
+            result.add(node, value, jet, start, stop)
         if movements is not None and node in moving:
             first = np.empty((2, stop - start, points.shape[1]))
             _spread_out(value, jet, first)

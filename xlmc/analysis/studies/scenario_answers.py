@@ -146,11 +146,11 @@ def scenario_answers(
     from xlmc.montecarlo.definitions.scenarios import Tabulated  # few runs have scenarios
 
     if run not in _FOUND:
-        _FOUND[run] = found = _answers(run, jobs, tell)
+        _FOUND[run] = result = _answers(run, jobs, tell)
         run.take_tabulated(
             {
                 change.number: each.run
-                for each in found.answers
+                for each in result.answers
                 if each.scenario is not None
                 for change in each.scenario.changes
                 if isinstance(change, Tabulated) and len(each.scenario.changes) == 1
@@ -177,13 +177,13 @@ def refuse_no_scenarios(model: CompiledModel) -> None:
 
 def scenario_faults(model: CompiledModel) -> dict[str, XlmcError]:
     """Return why scenarios of a workbook are not possible, by their names, without running any."""
-    found: dict[str, XlmcError] = {}
+    result: dict[str, XlmcError] = {}
     for scenario in model.definitions.scenarios:
         try:
             model_of(model, scenario)
         except XlmcError as error:
-            found[scenario.name] = error
-    return found
+            result[scenario.name] = error
+    return result
 
 
 def model_of(model: CompiledModel, scenario: Scenario | str) -> CompiledModel:
@@ -197,11 +197,11 @@ def model_of(model: CompiledModel, scenario: Scenario | str) -> CompiledModel:
 
     scenario = scenario_named(model, scenario)
     try:
-        found = applied(model, scenario.changes)
-        if [each.name for each in found.forecasts] != [each.name for each in model.forecasts]:
+        result = applied(model, scenario.changes)
+        if [each.name for each in result.forecasts] != [each.name for each in model.forecasts]:
             hint = "a scenario has the same forecasts as the workbook: change other cells"
             raise DefinitionError("the change alters which forecasts there are", hint=hint)
-        return found
+        return result
     except XlmcError as error:
         message = f"In the scenario {scenario.name!r}: {error.message}"
         where = scenario.row if error.where is None else error.where
@@ -231,11 +231,11 @@ def _answers(run: RunResult, jobs: int, tell: Callable[[str], None] | None) -> _
         if tell is not None:
             tell(scenario.name)
         try:
-            found = run_scenario(model_of(run.model, scenario), run, jobs=jobs)
+            result = run_scenario(model_of(run.model, scenario), run, jobs=jobs)
         except XlmcError as error:
             impossible[scenario.name] = str(error).partition("\n")[0]
         else:
-            answers.append(answers_of(found, scenario, run))
+            answers.append(answers_of(result, scenario, run))
     return _Found(tuple(answers), impossible)
 
 
@@ -288,8 +288,8 @@ def _forecast(run: RunResult, base: RunResult, forecast: Forecast, differs: bool
         result = run.saying(forecast.name, text)
     low, high = result.central()
     above = None if forecast.threshold is None else result.probability_above(forecast.threshold)
-    found = {"mean": result.mean, "low": low, "high": high} | ({} if above is None else {"above": above})
-    changes = _differences(run, base, forecast, found, paired=paired) if differs else {}
+    results = {"mean": result.mean, "low": low, "high": high} | ({} if above is None else {"above": above})
+    changes = _differences(run, base, forecast, results, paired=paired) if differs else {}
     form = result.form
     if base.results[forecast.name].form.kind is Kind.YES_NO and np.isin(numbers(result.column), (0.0, 1.0)).all():
         form = base.results[forecast.name].form  # a formula that is the same in all trials says no kind
@@ -297,7 +297,7 @@ def _forecast(run: RunResult, base: RunResult, forecast: Forecast, differs: bool
 
 
 def _differences(
-    run: RunResult, base: RunResult, forecast: Forecast, found: Mapping[str, Estimate], *, paired: bool
+    run: RunResult, base: RunResult, forecast: Forecast, result: Mapping[str, Estimate], *, paired: bool
 ) -> dict[str, Estimate]:
     """Return the difference of each number from the workbook's own."""
     from xlmc.analysis.studies.comparison.paired_statistics import Accepted, Pair
@@ -313,9 +313,9 @@ def _differences(
     theirs = {"mean": own.mean, "low": low, "high": high}
     if own.definition.threshold is not None:
         theirs["above"] = own.probability_above(own.definition.threshold)
-    both = [key for key in found if key in theirs]
+    both = [key for key in result if key in theirs]
     if not paired:
-        return {key: _independent(theirs[key], found[key]) for key in both}
+        return {key: _independent(theirs[key], result[key]) for key in both}
     pairs = zip((base, run), columns, strict=True)
     first, second = (Accepted.of(each.trial_index, column, kind) for each, column in pairs)
     pair = Pair(first, second, run.plan.size, max(base.plan.replicates, run.plan.replicates))

@@ -86,10 +86,10 @@ def edited_workbook(model: CompiledModel, scenario: Scenario | str) -> EditedWor
         DefinitionError: it is not possible, or the table lacks a column for it.
         WorkbookError: one of the cells holds a formula.
     """
-    found = scenario_named(model, scenario)
-    wanted = model_of(model, found)
-    cells, lacking = edits(model, found.changes)
-    _refuse_lacking(found, lacking, model)
+    result = scenario_named(model, scenario)
+    wanted = model_of(model, result)
+    cells, lacking = edits(model, result.changes)
+    _refuse_lacking(result, lacking, model)
     book = model.workbook
     cells = {cell: value for cell, value in cells.items() if not _holds(book, cell, value)}
     _refuse_formulas(book, cells)
@@ -104,11 +104,11 @@ def edited_workbook(model: CompiledModel, scenario: Scenario | str) -> EditedWor
     _refuse_difference(
         wanted,
         build_model(read_workbook(data, book.name, book.functions), model.path, python=model.definitions.python),
-        found,
+        result,
     )
     typed = {cell: (book.content(cell).value, value) for cell, value in sorted(cells.items())}
     results = bool(result_sheets(book.parts))
-    return EditedWorkbook(model.path, found, typed, len(shown.values), left, results, data, book.sha256, model.files)
+    return EditedWorkbook(model.path, result, typed, len(shown.values), left, results, data, book.sha256, model.files)
 
 
 def write_edited(edited: EditedWorkbook, path: Path, *, overwrite: bool = False) -> Path:
@@ -177,13 +177,13 @@ def _of_what_if_tables(book: Workbook) -> list[Cell]:
     return [Cell(table.area.sheet, table.area.top, table.area.left) for table in book.data_tables]
 
 
-def _refuse_difference(wanted: CompiledModel, found: CompiledModel, scenario: Scenario) -> None:
+def _refuse_difference(wanted: CompiledModel, model: CompiledModel, scenario: Scenario) -> None:
     """Refuse a file that would say something else than the scenario, for whatever reason.
 
     Raises:
         WorkbookError: it does.
     """
-    if _definitions(wanted) != _definitions(found):
+    if _definitions(wanted) != _definitions(model):
         message = f"the workbook would not hold the changes of the scenario {scenario.name!r}"
         raise WorkbookError(message, where=wanted.path, hint="Nothing was written; please report this")
 

@@ -394,16 +394,16 @@ class _Screen:
 
     def _compare(self, names: tuple[str, ...], run: RunResult) -> Cost:
         accepted = acceptance(self._run, run)
-        found = {f.name: self._difference(f, run) for f in self._judged}
-        limits = {name: each.tolerances(self._tolerances[name][0], self._chance) for name, each in found.items()}
+        result = {f.name: self._difference(f, run) for f in self._judged}
+        limits = {name: each.tolerances(self._tolerances[name][0], self._chance) for name, each in result.items()}
         sizes = {
             f"{name}, {number}": (change.difference, limits[name][number])
-            for name, each in found.items()
+            for name, each in result.items()
             for number, change in each.changes
         }
         sizes["acceptance"] = accepted.relative, self._acceptance_tolerance
         size = max(in_tolerances(*each) for each in sizes.values())
-        return Cost(names, accepted, found, judge(sizes), size)
+        return Cost(names, accepted, result, judge(sizes), size)
 
     def _difference(self, forecast: Forecast, run: RunResult) -> Difference:
         """Compare a forecast; what the change does not reach, most of the answers of a large book, only once."""
@@ -494,13 +494,13 @@ def _groups(correlations: Floats) -> list[frozenset[int]]:
     size = np.abs(correlations)
     rows, columns = np.nonzero(np.triu(size >= _CORRELATED, 1))
     own = {index: frozenset([index]) for index in range(len(size))}
-    found = []
+    result = []
     for pair in np.argsort(-size[rows, columns], kind="stable").tolist():
         joined = own[int(rows[pair])] | own[int(columns[pair])]
         if joined not in (own[int(rows[pair])], own[int(columns[pair])]):
-            found.append(joined)
+            result.append(joined)
             own |= dict.fromkeys(joined, joined)
-    return found
+    return result
 
 
 @dataclass(frozen=True, slots=True)

@@ -141,8 +141,8 @@ def seek(
     def answers(at: Floats) -> Floats:
         """Return what the cell is where `by` is this."""
         parts = [at[start : start + edges.size] for start in range(0, at.size, edges.size)]
-        found = [function(part, np.zeros(part.size, np.intp)) for part in parts]
-        return np.concatenate([np.empty(0), *found]) + to
+        result = [function(part, np.zeros(part.size, np.intp)) for part in parts]
+        return np.concatenate([np.empty(0), *result]) + to
 
     values, throughout = _without_insides(np.unique(find_roots(function, edges[:-1], edges[1:]).values), answers, to)
     ends = float(edges[0]), float(edges[-1])
@@ -222,14 +222,14 @@ def _cell(workbook: Workbook, text: str, definitions: Definitions) -> Cell:
     try:
         return cell_of_reference(workbook, text.strip().removeprefix("="), first, Cell(first, 1, 1))
     except DefinitionError as error:
-        found = named.get(name_key(text))
-        if found is None:
+        result = named.get(name_key(text))
+        if result is None:
             message, hint = f"{text!r} names no cell", error.hint
             known = did_you_mean(text, [name for name, _ in rows])
             if "did you mean" in known.casefold():
                 hint = known
             raise DefinitionError(message, where=workbook.name, hint=hint) from error
-        return found
+        return result
 
 
 def _without(definitions: Definitions, unknown: Cell) -> Definitions:
@@ -245,15 +245,15 @@ def _bases(definitions: Definitions, needed: tuple[str, ...]) -> dict[str, float
     Raises:
         SimulationError: one has none.
     """
-    found = {}
+    result = {}
     for each in definitions.assumptions:
         if each.name in needed:
             if each.base is None:
                 what = "draw" if isinstance(each.cell, InFormula) else "assumption"
                 message = f"The {what} {each.name!r} has no base value"
                 raise SimulationError(message, where=each.cell, hint="Type one into its cell")
-            found[each.name] = each.base
-    return found
+            result[each.name] = each.base
+    return result
 
 
 def _outwards(base: float) -> Floats:

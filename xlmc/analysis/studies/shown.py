@@ -11,13 +11,13 @@ __all__ = ["Documents", "Shown"]
 class Documents(Protocol):
     """What makes documents of studies."""
 
-    def text(self, found: Shown) -> str:
+    def text(self, shown: Shown) -> str:
         """Return the title and the sentences of what was found."""
 
-    def html(self, found: Shown) -> str:
+    def html(self, shown: Shown) -> str:
         """Return all of it as HTML."""
 
-    def save(self, found: Shown, path: Path, *, overwrite: bool) -> Path:
+    def save(self, shown: Shown, path: Path, *, overwrite: bool) -> Path:
         """Write all of it to a file, in the form that its ending names."""
 
 

@@ -283,7 +283,7 @@ def stress(
     base = {each.name: columns[each.name].of_all for each in reported}
     tell("the tails of the assumptions")
     moves = {
-        name: found for name in stressed if (found := _moves(run, name, share / 100.0, reported, columns)) is not None
+        name: result for name in stressed if (result := _moves(run, name, share / 100.0, reported, columns)) is not None
     }
     chosen = {each.name: {*sorted(moves, key=lambda name: -moves[name][each.name])[:MOST]} for each in reported}
     tails: list[Tail] = []
@@ -351,12 +351,12 @@ def _range_of(words: str) -> _Range:
     raise SimulationError(f"{words!r} is no range of answers", hint=hint)
 
 
-def _end(found: re.Match[str], which: str, words: str) -> _End:
-    number = float(found[f"x{which}"].replace(",", ""))
-    is_percentile = found[f"p{which}"] is not None
-    if is_percentile and (found[f"c{which}"] or not 0.0 < number < 100.0):
+def _end(match: re.Match[str], which: str, words: str) -> _End:
+    number = float(match[f"x{which}"].replace(",", ""))
+    is_percentile = match[f"p{which}"] is not None
+    if is_percentile and (match[f"c{which}"] or not 0.0 < number < 100.0):
         raise SimulationError(f"In {words!r}: P{number_text(number)} is no percentile", hint="Such as P90")
-    return _End(number / 100.0 if found[f"c{which}"] else number, is_percentile)
+    return _End(number / 100.0 if match[f"c{which}"] else number, is_percentile)
 
 
 @dataclass(frozen=True, slots=True)
@@ -396,8 +396,8 @@ class _Answers:
             }
             if threshold is not None:
                 wanted["above"] = lambda part: share_above(part, threshold)
-        found = {name: of(accepted) for name, of in wanted.items()} if accepted.m >= _LEAST else {}
-        return cls(forecast, accepted, result.form, text, wanted, found)
+        results = {name: of(accepted) for name, of in wanted.items()} if accepted.m >= _LEAST else {}
+        return cls(forecast, accepted, result.form, text, wanted, results)
 
     @property
     def is_counted(self) -> bool:
@@ -417,34 +417,34 @@ class _Answers:
         some = Accepted(self.accepted.trials[inside], self.accepted.values[inside], self.accepted.kind)
         numbers, changes = {}, {}
         for name, of in self.statistics.items():
-            found, whole = of(some), self.all[name]
+            statistic, whole = of(some), self.all[name]
             numbers[name], changes[name] = _against(
-                found, whole, inside, part.beside(some.trials, self.accepted.trials)
+                statistic, whole, inside, part.beside(some.trials, self.accepted.trials)
             )
         return Part(some.m, numbers, changes)
 
 
 def _against(
-    found: Statistic, whole: Statistic, inside: Bools, moves: Callable[[Floats], Floats]
+    statistic: Statistic, whole: Statistic, inside: Bools, moves: Callable[[Floats], Floats]
 ) -> tuple[Estimate, Estimate]:
     """Return a statistic of a part, and its difference from that of all, with the errors that the limit adds.
 
     Args:
-        found: of the part.
+        statistic: of the part.
         whole: of all `(m,)` trials.
         inside: `(m,)` the part.
         moves: gives what each of the m trials adds by moving the limit, of the pulls of the part.
     """
-    value, n = found.estimate.value - whole.estimate.value, found.estimate.n
-    if found.influence is None or whole.influence is None:
-        return found.estimate, Estimate(value, n=n)
-    pulls = moves(found.influence.pulls)
-    pulls[inside] += found.influence.pulls
-    least = least_error(n) if found.hits is not None else 0.0
+    value, n = statistic.estimate.value - whole.estimate.value, statistic.estimate.n
+    if statistic.influence is None or whole.influence is None:
+        return statistic.estimate, Estimate(value, n=n)
+    pulls = moves(statistic.influence.pulls)
+    pulls[inside] += statistic.influence.pulls
+    least = least_error(n) if statistic.hits is not None else 0.0
     own, apart = max(_error(pulls), least), max(_error(pulls - whole.influence.pulls), least)
-    stated = with_error(found.estimate.value, own, n - 1.0, 0.95, n)
-    if found.hits is not None and found.estimate.error is not None and own <= found.estimate.error:
-        stated = found.estimate
+    stated = with_error(statistic.estimate.value, own, n - 1.0, 0.95, n)
+    if statistic.hits is not None and statistic.estimate.error is not None and own <= statistic.estimate.error:
+        stated = statistic.estimate
     return stated, with_error(value, apart, n - 1.0, 0.95, n)
 
 
@@ -475,12 +475,12 @@ class _Some:
         rows = np.flatnonzero(inside)
         order = rows[np.argsort(x[rows], kind="stable")]
         many = max(10, round(math.sqrt(rows.size)))
-        found = []
+        result = []
         limits = ((low, moving[0], order[:many], x < low), (high, moving[1], order[::-1][:many], x > high))
         for limit, moves, ends, beyond in limits:
             if moves and rows.size and np.count_nonzero(x == limit) <= max(2, 1e-4 * x.size):
-                found.append((ends, beyond))
-        return cls(inside, tuple(found))
+                result.append((ends, beyond))
+        return cls(inside, tuple(result))
 
     def beside(self, some: NDArray[np.int64], all_rows: NDArray[np.int64]) -> Callable[[Floats], Floats]:
         """Return what gives, of the pulls of the part `(rows of some,)`, what each trial `(m,)` adds by the limits.
@@ -490,13 +490,13 @@ class _Some:
         """
 
         def moves(pulls: Floats) -> Floats:
-            found = np.zeros(all_rows.size)
+            values = np.zeros(all_rows.size)
             for ends, beyond in self.nearest:
                 at = np.isin(some, ends)
                 if at.any():
                     outside = beyond[all_rows]
-                    found += float(pulls[at].mean()) * (outside - outside.mean())
-            return found
+                    values += float(pulls[at].mean()) * (outside - outside.mean())
+            return values
 
         return moves
 
@@ -513,13 +513,13 @@ def _moves(
     sides = [x >= (limit := _limit(x, share, True)), x <= (lower := _limit(x, share, False))]
     if limit == lower or any(not _LEAST <= np.count_nonzero(inside) < x.size for inside in sides):
         return None
-    found = {}
+    result = {}
     for each in reported:
         answers = columns[each.name].accepted
         means = [answers.values[inside[answers.trials]] for inside in sides]
         whole = float(answers.values.mean())
-        found[each.name] = max((abs(float(part.mean()) - whole) for part in means if part.size), default=0.0)
-    return found
+        result[each.name] = max((abs(float(part.mean()) - whole) for part in means if part.size), default=0.0)
+    return result
 
 
 def _tail(

@@ -309,13 +309,13 @@ def _uncertain_names(model: CompiledModel, asked: Iterable[str]) -> tuple[str, .
         SimulationError: no assumption that is drawn has an asked name.
     """
     live = [a.name for a in model.live]
-    found = {name for text in asked for name in names_of_rows(text, model.live, "assumption that is drawn")}
-    found = found or {a.name for a in model.live if a.uncertain}
-    if not found:
+    result = {name for text in asked for name in names_of_rows(text, model.live, "assumption that is drawn")}
+    result = result or {a.name for a in model.live if a.uncertain}
+    if not result:
         message = f"no assumption that a forecast or filter needs is Uncertain under {UNCERTAINTY}"
         hint = "Mark those whose one value nobody knows in that column of xlmc_assumptions, or name them (--uncertain)"
         raise DefinitionError(message, where=model.workbook.name, hint=hint)
-    return tuple(name for name in live if name in found)
+    return tuple(name for name in live if name in result)
 
 
 def _refuse_dependent(model: CompiledModel, names: Sequence[str]) -> None:
@@ -388,9 +388,9 @@ class _Grouped:
     def deviations(self) -> Floats:
         """`(o,)` standard deviations; 0 of a single trial, and of values that are all the same."""
         apart = self.values - np.repeat(self.means, self.counts)
-        found = np.sqrt(self.sums(apart * apart) / np.maximum(self.counts - 1, 1))
+        values = np.sqrt(self.sums(apart * apart) / np.maximum(self.counts - 1, 1))
         still = self.values[self._starts] == self.values[self._starts + self.counts - 1]
-        return np.where(still, 0.0, found)
+        return np.where(still, 0.0, values)
 
     def above(self, threshold: float) -> Floats:
         """`(o,)` the share of the trials above a number."""
@@ -425,11 +425,11 @@ def _bands(
     ends = [(100.0 - confidence) / 2.0, (100.0 + confidence) / 2.0]
 
     def band(number: str, pooled: Estimate, of: _Number, form: Form) -> Band:
-        found = of(whole)
-        low, high = _percentiles(found, whole.counts, ends)
-        return Band(number, pooled, low, high, form, _excess(found, whole.counts, of, halves))
+        results = of(whole)
+        low, high = _percentiles(results, whole.counts, ends)
+        return Band(number, pooled, low, high, form, _excess(results, whole.counts, of, halves))
 
-    found = [_share_at(whole, share, ends) for share in _CURVE]
+    answer = [_share_at(whole, share, ends) for share in _CURVE]
     means = whole.means
     return ForecastBands(
         definition=result.definition,
@@ -437,8 +437,8 @@ def _bands(
         bands=tuple(band(*each) for each in _asked(result, percents)),
         shares=_CURVE,
         curve=result.sample.quantile(_CURVE),
-        low=np.array([low for low, _ in found]),
-        high=np.array([high for _, high in found]),
+        low=np.array([low for low, _ in answer]),
+        high=np.array([high for _, high in answer]),
         draws=int(whole.draws.size),
         effective=float(whole.counts.sum() ** 2 / (whole.counts.astype(np.float64) ** 2).sum()),
         causes={name: rank_correlation(draws[whole.draws], means) for name, draws in drawn.items()},
@@ -474,10 +474,10 @@ def _ordinal(percent: float) -> str:
     return f"{number_text(percent)}{ending} percentile"
 
 
-def _percentiles(found: Floats, counts: NDArray[np.intp], percents: Sequence[float]) -> list[Estimate]:
+def _percentiles(values: Floats, counts: NDArray[np.intp], percents: Sequence[float]) -> list[Estimate]:
     """Return percentiles of a number over the outer draws, which count by their trials."""
     alike = counts.size > 0 and bool(np.all(counts == counts[0]))
-    sample = Sample.of(found, None if alike else counts.astype(np.float64), two_valued=False)
+    sample = Sample.of(values, None if alike else counts.astype(np.float64), two_valued=False)
     return list(percentiles(sample, percents).values())
 
 
@@ -486,19 +486,19 @@ def _share_at(whole: _Grouped, share: float, ends: Sequence[float]) -> tuple[flo
     return low.value, high.value
 
 
-def _excess(found: Floats, counts: NDArray[np.intp], of: _Number, halves: Sequence[_Grouped]) -> float:
+def _excess(values: Floats, counts: NDArray[np.intp], of: _Number, halves: Sequence[_Grouped]) -> float:
     """Return the part of the spread of a number `(o,)` over the outer draws that comes from few inner trials; 0 to 1.
 
     The spread is the root of true variance and noise; without noise it would be the root of the first alone.
     """
     both, one, other = np.intersect1d(halves[0].draws, halves[1].draws, assume_unique=True, return_indices=True)
-    if both.size < LEAST_OUTER or found.size < LEAST_OUTER:
+    if both.size < LEAST_OUTER or values.size < LEAST_OUTER:
         return 0.0
     apart = of(halves[0])[one] - of(halves[1])[other]
     weights = (halves[0].counts[one] + halves[1].counts[other]).astype(np.float64)
     noise = float(np.average(apart * apart, weights=weights)) / 4.0
-    middle = float(np.average(found, weights=counts))
-    spread = float(np.average((found - middle) ** 2, weights=counts))
+    middle = float(np.average(values, weights=counts))
+    spread = float(np.average((values - middle) ** 2, weights=counts))
     if not spread or not math.isfinite(spread):
         return 0.0
     return 1.0 - math.sqrt(max(0.0, 1.0 - noise / spread))

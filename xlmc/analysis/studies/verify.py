@@ -119,7 +119,7 @@ def _has_formula(workbook: Workbook, cell: Cell) -> bool:
 def _check(lowering: Lowering, cell: Cell) -> CellCheck:
     check = _check_cell(lowering, cell)
     others = _filled_by(lowering, cell) if check.status is Status.MATCHED else ()
-    return next((found for found in others if found.status is Status.DIFFERING), check)
+    return next((result for result in others if result.status is Status.DIFFERING), check)
 
 
 def _filled_by(lowering: Lowering, anchor: Cell) -> Iterator[CellCheck]:
@@ -157,7 +157,7 @@ def _check_cell(lowering: Lowering, cell: Cell) -> CellCheck:
 
 def groups(cells: Iterable[CellCheck]) -> list[tuple[str, Sequence[CellCheck]]]:
     """Cells by reason, the most frequent first."""
-    found: dict[str, list[CellCheck]] = {}
+    result: dict[str, list[CellCheck]] = {}
     for cell in cells:
-        found.setdefault(cell.reason, []).append(cell)
-    return sorted(found.items(), key=lambda item: -len(item[1]))
+        result.setdefault(cell.reason, []).append(cell)
+    return sorted(result.items(), key=lambda item: -len(item[1]))

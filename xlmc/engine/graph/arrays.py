@@ -357,9 +357,9 @@ class NodeBuilder:
             return chosen
         if function.takes_sets or function.name in PAIRED_OR_COUNTED:
             return self._totals.apply(function, arguments)
-        found = self._lookups.apply(function, arguments)
-        if found is not None:
-            return found
+        value = self._lookups.apply(function, arguments)
+        if value is not None:
+            return value
         if all(self.dag.sizes[node] is None for node in arguments):
             return self.dag.add(Apply(function, arguments))
         loose = tuple(p for i, p in enumerate(arguments) if not function.parameter(i).ranged)

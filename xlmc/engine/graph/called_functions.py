@@ -84,9 +84,9 @@ def check_count(name: str, arguments: Sequence[object]) -> None:
     Raises:
         FormulaError: it takes another number.
     """
-    found = limits(name)
-    if found is not None and not found[0] <= len(arguments) <= found[1]:
-        raise FormulaError(f"{name} has {_count_arguments(len(arguments))}; it takes {_describe_limits(*found)}")
+    result = limits(name)
+    if result is not None and not result[0] <= len(arguments) <= result[1]:
+        raise FormulaError(f"{name} has {_count_arguments(len(arguments))}; it takes {_describe_limits(*result)}")
 
 
 def limits(name: str) -> tuple[int, int] | None:

@@ -166,8 +166,8 @@ def lower_as_read(cells: Iterable[Cell], lowers: Lowers) -> None:
         while not lowers.is_lowered(cell):
             try:
                 _lower_with_needs(cell, lowers)
-            except Iterates as found:
-                lowers.iterate(found.cell)
+            except Iterates as iterates:
+                lowers.iterate(iterates.cell)
 
 
 def _lower_with_needs(first: Cell, lowers: Lowers) -> None:

@@ -74,8 +74,8 @@ def areas_of(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> list[
 
 def _union(lowering: TreeLowering, tree: ir.Binary, scope: Scope) -> list[Area] | None:
     first, rest = ir.chain(tree)
-    found = [areas_of(lowering, part, scope) for part in (first, *(part for _, part in rest))]
-    return None if any(areas is None for areas in found) else [area for areas in found for area in areas or ()]
+    result = [areas_of(lowering, part, scope) for part in (first, *(part for _, part in rest))]
+    return None if any(areas is None for areas in result) else [area for areas in result for area in areas or ()]
 
 
 def join_areas(areas: Sequence[Area]) -> ir.Expression:
@@ -89,11 +89,11 @@ def join_areas(areas: Sequence[Area]) -> ir.Expression:
 def _combine(
     lowering: TreeLowering, operator: str, left: ir.Expression, right: ir.Expression, scope: Scope
 ) -> list[Area] | None:
-    found = _end(lowering, left, scope.pointed_at()), _end(lowering, right, scope.pointed_at())
-    if operator == ":" and any(_may_be_picked(part, areas) for part, areas in zip((left, right), found, strict=True)):
+    result = _end(lowering, left, scope.pointed_at()), _end(lowering, right, scope.pointed_at())
+    if operator == ":" and any(_may_be_picked(part, areas) for part, areas in zip((left, right), result, strict=True)):
         hint = "TAKE and DROP give as much of a range as a value that varies says"
         raise FormulaError("an end of a range must be fixed: no value that varies may change it", hint=hint)
-    a, b = ([area.whole for area in areas] if areas else [] for areas in found)
+    a, b = ([area.whole for area in areas] if areas else [] for areas in result)
     if len(a) != 1 or len(b) != 1 or a[0].sheet != b[0].sheet:
         raise FormulaError(
             f"the two sides of {operator!r} are not areas of one sheet",
@@ -226,10 +226,10 @@ def _indirect(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> lis
     a1 = len(arguments) < 2 or _is_true(lowering, arguments[1], scope)
     tree = read_a1(str(texts[0])) if a1 else read_r1c1(str(texts[0]), scope.cell)
     over_sheets = isinstance(tree, ir.Reference) and tree.last_sheet is not None  # which Excel does not read from texts
-    found = None if tree is None or over_sheets else _resolve(lowering, tree, scope)
-    if found is None:
+    areas = None if tree is None or over_sheets else _resolve(lowering, tree, scope)
+    if areas is None:
         raise NoReference
-    return found if scope.pointing else [require(lowering, area) for area in found]
+    return areas if scope.pointing else [require(lowering, area) for area in areas]
 
 
 def _is_true(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:

@@ -48,14 +48,14 @@ def find_areas(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> lis
 
 def has_exposed(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
     """Whether a tree computes something of ranges that are cut, cell by cell."""
-    found: list[Area] = []
+    areas: list[Area] = []
 
     def note(area: Area) -> Area:
-        found.append(area)
+        areas.append(area)
         return area
 
     change_exposed(lowering, tree, scope, note)
-    return bool(found)
+    return bool(areas)
 
 
 def change_exposed(lowering: TreeLowering, tree: ir.Expression, scope: Scope, change: Change) -> ir.Expression:

@@ -177,12 +177,12 @@ class Dag:
 
     def _to_compute(self, node_id: int) -> list[int]:
         """Return a forgotten array and the forgotten ones that it is computed from, in the order of their making."""
-        found, left = {node_id}, [node_id]
+        result, left = {node_id}, [node_id]
         while left:
-            parts = self._forgotten.intersection(uses(self.origins[left.pop()])) - found
-            found |= parts
+            parts = self._forgotten.intersection(uses(self.origins[left.pop()])) - result
+            result |= parts
             left += parts
-        return sorted(found)
+        return sorted(result)
 
     def input(self, name: str) -> int:
         """Return the node of an assumption."""
@@ -366,12 +366,12 @@ class Dag:
         """Return the varying nodes that the targets need, in order; `reads` says what a node needs, if not
         all it uses.
         """
-        needed, found = set(targets), []
+        needed, result = set(targets), []
         for node in range(max(needed, default=-1), -1, -1):
             if node in needed and not isinstance(self.nodes[node], Constant):
-                found.append(node)
+                result.append(node)
                 needed.update(uses(self.nodes[node]) if reads is None else reads(node))
-        return found[::-1]
+        return result[::-1]
 
 
 def _of_nodes(

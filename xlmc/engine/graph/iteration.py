@@ -102,7 +102,7 @@ def _round(
     taken = tuple(node for node in outer if not isinstance(dag.nodes[node], Constant))
     known = [node for node in outer if isinstance(dag.nodes[node], Constant)]
     slots = {node: slot for slot, node in enumerate((*parameters, *taken, *known, *steps))}
-    constants = {slots[node]: found.value for node in known if isinstance(found := dag.nodes[node], Constant)}
+    constants = {slots[node]: answer.value for node in known if isinstance(answer := dag.nodes[node], Constant)}
     made: dict[int, Step] = {node: in_slots(dag.nodes[node], slots) for node in steps}
     formulas = []
     for result in results:
@@ -113,8 +113,8 @@ def _round(
 
 def _dependent(dag: Dag, needed: Iterable[int], parameters: Iterable[int]) -> list[int]:
     """Return the nodes among those needed that depend on parameters, in order."""
-    found = set(parameters)
+    result = set(parameters)
     for node in needed:
-        if not found.isdisjoint(uses(dag.nodes[node])):
-            found.add(node)
-    return [node for node in needed if node in found]
+        if not result.isdisjoint(uses(dag.nodes[node])):
+            result.add(node)
+    return [node for node in needed if node in result]

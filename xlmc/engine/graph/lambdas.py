@@ -66,19 +66,19 @@ def lower(
         case ir.Invoke(ir.ErrorLiteral(code), _):
             return lowering.error(code)
         case ir.Invoke(function, arguments):
-            found = tuple(bind(argument, scope) for argument in arguments)
-            return _call(lowering, find_callee(lowering, function, scope), found, scope)
+            result = tuple(bind(argument, scope) for argument in arguments)
+            return _call(lowering, find_callee(lowering, function, scope), result, scope)
 
 
 def _variable(lowering: TreeLowering, name: str, scope: Scope) -> int:
-    found = scope.variables[name]
-    if isinstance(found, Closure):
+    thunk = scope.variables[name]
+    if isinstance(thunk, Closure):
         raise NothingCallsError
-    if isinstance(found, Thunk):
-        if scope.taking not in found.known:
-            found.known[scope.taking] = lowering.lower(found.tree, found.scope.seen_from(scope))
-        return found.known[scope.taking]
-    return found
+    if isinstance(thunk, Thunk):
+        if scope.taking not in thunk.known:
+            thunk.known[scope.taking] = lowering.lower(thunk.tree, thunk.scope.seen_from(scope))
+        return thunk.known[scope.taking]
+    return thunk
 
 
 def _call(lowering: TreeLowering, function: Callee, arguments: Arguments, scope: Scope) -> int:
@@ -216,13 +216,13 @@ def _map(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
 
 
 def _reduce(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
-    found = _accumulate(lowering, arguments, scope)
-    return found if isinstance(found, int) else found[1]
+    result = _accumulate(lowering, arguments, scope)
+    return result if isinstance(result, int) else result[1]
 
 
 def _scan(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int:
-    found = _accumulate(lowering, arguments, scope)
-    return found if isinstance(found, int) else found[0]
+    result = _accumulate(lowering, arguments, scope)
+    return result if isinstance(result, int) else result[0]
 
 
 def _accumulate(lowering: TreeLowering, arguments: Trees, scope: Scope) -> int | tuple[int, int]:

@@ -476,8 +476,8 @@ class Lowering(TreeLowering):
         """Lower references joined by an operator, where one value is wanted."""
         try:
             areas = areas_of(self, tree, scope)
-        except NoReference as found:
-            return self.error(found.code)
+        except NoReference as no_reference:
+            return self.error(no_reference.code)
         if areas is None or len(areas) != 1:
             raise FormulaError("one value is needed here, and several areas joined by commas are given")
         return self.lower(areas[0], scope)
@@ -559,8 +559,8 @@ class Lowering(TreeLowering):
             node = self._as_read(function_here, picked, arguments[picked], scope, parts)
             nodes = self._argument(function, picked, arguments[picked], scope, first) if node is None else [node]
             parts[picked] = nodes
-        found = tuple(node for position in range(len(arguments)) for node in parts[position])
-        return self.apply(function_here, found)
+        result = tuple(node for position in range(len(arguments)) for node in parts[position])
+        return self.apply(function_here, result)
 
     def _as_read(
         self, function: Function, picked: int, tree: ir.Expression, scope: Scope, given: Mapping[int, list[int]]
@@ -601,8 +601,8 @@ class Lowering(TreeLowering):
             if name in special:
                 try:
                     return special[name](self, arguments, scope)
-                except NoReference as found:
-                    return self.error(found.code)
+                except NoReference as no_reference:
+                    return self.error(no_reference.code)
         return None
 
     def _stack(self, parts: list[int]) -> int:
@@ -621,8 +621,8 @@ class Lowering(TreeLowering):
         """
         try:
             areas = areas_of(self, tree, scope)
-        except NoReference as found:
-            return [self.error(found.code)]
+        except NoReference as no_reference:
+            return [self.error(no_reference.code)]
         if areas is None:
             passing_on = isinstance(tree, _PASSING_ON)
             return [lower_reference(self, tree, scope.wanted_whole()) if passing_on else self.lower(tree, scope)]
@@ -698,11 +698,11 @@ class Lowering(TreeLowering):
             self.forget(each)
         lower_as_read([need for each in cells for need in graph.needs.of(each) if need not in set(cells)], self)
         saved = [book.content(each).value for each in cells]
-        found = iterate_cells(self.dag, cells, saved, self._iteration, self._lower_iterated)
-        for each, node in zip(found.cells, found.nodes, strict=True):
+        result = iterate_cells(self.dag, cells, saved, self._iteration, self._lower_iterated)
+        for each, node in zip(result.cells, result.nodes, strict=True):
             self._set(each, node)
-        self.iterated.append(found)
-        self.notices.append(found.notice(self._iteration))
+        self.iterated.append(result)
+        self.notices.append(result.notice(self._iteration))
 
     def _lower_iterated(self, parameters: Mapping[Cell, int]) -> list[int]:
         """Lower the formulas of cells, read as what stands for them."""

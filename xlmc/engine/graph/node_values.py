@@ -91,8 +91,8 @@ def _select(condition: Value, yes: Value, no: Value) -> Value:
 
 def _if_error(value: Value, instead: Value, only_na: bool) -> Value:
     value, instead = align((value, instead))
-    found: Value = if_na(value, instead) if only_na else if_error(value, instead)
-    return found
+    result: Value = if_na(value, instead) if only_na else if_error(value, instead)
+    return result
 
 
 def _stack(rows: list[list[Value]]) -> Value:
@@ -201,15 +201,15 @@ class Ragged(Value):
 def by_trial(evaluate: Callable[[Mapping[int, Value]], Value], values: Mapping[int, Value]) -> Value:
     """Evaluate each trial alone; one value where all are of one size, a `Ragged` otherwise."""
     n = max(value.shape[0] for value in values.values())
-    found: list[Value] = []
+    result: list[Value] = []
     size = 0
     for i in range(n):
-        found.append(evaluate({node: _trial(value, i) for node, value in values.items()}))
-        size += found[-1].nbytes
+        result.append(evaluate({node: _trial(value, i) for node, value in values.items()}))
+        size += result[-1].nbytes
         ask_for_live(size)
-    if len({value.shape for value in found}) > 1:
-        return Ragged(found)
-    return join_values(found, axis=0)
+    if len({value.shape for value in result}) > 1:
+        return Ragged(result)
+    return join_values(result, axis=0)
 
 
 def _trial(value: Value, i: int) -> Value:

@@ -59,8 +59,8 @@ class NumberLookups:
         if line is None or near is None or line < 1:
             return None
         order = _RISING if len(arguments) == 3 or near else _EQUAL
-        first, found = (self._column(arguments[1], at, across=across) for at in (0, int(line) - 1))
-        return self._look_up(arguments[0], first, found, order)
+        first, value = (self._column(arguments[1], at, across=across) for at in (0, int(line) - 1))
+        return self._look_up(arguments[0], first, value, order)
 
     def by_order(self, arguments: Sequence[int]) -> int | None:
         """LOOKUP: key, vector, results; or key and a table that begins with the one and ends with the other."""
@@ -69,8 +69,8 @@ class NumberLookups:
             return self._look_up(arguments[0], self._vector(arguments[1]), self._vector(arguments[2]), _RISING)
         across = columns > rows
         last = (rows if across else columns) - 1
-        first, found = (self._column(arguments[1], at, across=across) for at in (0, last))
-        return self._look_up(arguments[0], first, found, _RISING)
+        first, value = (self._column(arguments[1], at, across=across) for at in (0, last))
+        return self._look_up(arguments[0], first, value, _RISING)
 
     def by_value(self, arguments: Sequence[int]) -> int | None:
         """XLOOKUP of three arguments: key, vector, results."""

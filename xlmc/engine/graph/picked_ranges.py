@@ -111,7 +111,7 @@ def _find_read(
     function: Function, picked: int, given: Mapping[int, Value], cells: Value, asked: Sequence[int]
 ) -> list[int]:
     """Find which cells of an argument a function reads: an error in such a cell is an error of the result."""
-    found: list[int] = []
+    results: list[int] = []
     groups = [list(asked)]
     node = Apply(function, tuple(range(len(given) + 1)))
     while groups:
@@ -119,10 +119,10 @@ def _find_read(
         shown = (result.kinds == _READ).reshape(len(result.kinds), -1).any(axis=1)
         read = np.broadcast_to(shown, len(groups))
         hit = [group for group, is_read in zip(groups, read.tolist(), strict=True) if is_read]
-        found += [group[0] for group in hit if len(group) == 1]
+        results += [group[0] for group in hit if len(group) == 1]
         halves = [(group[: len(group) // 2], group[len(group) // 2 :]) for group in hit if len(group) > 1]
         groups = [half for pair in halves for half in pair]
-    return found
+    return results
 
 
 def _with_errors(cells: Value, groups: Sequence[Sequence[int]]) -> Value:

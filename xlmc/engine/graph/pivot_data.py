@@ -60,11 +60,11 @@ def _pivot_at(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> Piv
     if len(arguments) % 2:
         raise FormulaError("GETPIVOTDATA has a field without an item", hint="give fields and items in pairs")
     first = Cell(areas[0].sheet, areas[0].top, areas[0].left)
-    found = next((pivot for pivot in lowering.graph.workbook.pivots if first in pivot.area), None)
-    if found is None:
+    pivot_table = next((pivot for pivot in lowering.graph.workbook.pivots if first in pivot.area), None)
+    if pivot_table is None:
         hint = "name a cell of a pivot table in this workbook, or save it once with Excel"
         raise FormulaError(f"no pivot table that can be read stands at {first}", hint=hint)
-    return found
+    return pivot_table
 
 
 def _refuse_varying_source(lowering: TreeLowering, pivot: PivotTable, scope: Scope) -> None:
@@ -126,8 +126,8 @@ class _Choice:
         if isinstance(asked, ErrorCode):
             return ir.ErrorLiteral(asked)
         items = items_named(self._pivot.fields[field], asked)
-        found = [self.tree(rest, {**chosen, field: item}) for item in items]
-        return next((each for each in found if each != _NOTHING), _NOTHING)
+        result = [self.tree(rest, {**chosen, field: item}) for item in items]
+        return next((each for each in result if each != _NOTHING), _NOTHING)
 
     def _varying(
         self, field: int, tree: ir.Expression, rest: Sequence[tuple[int, ir.Expression]], chosen: _Chosen
@@ -141,10 +141,10 @@ class _Choice:
         self._made += len(choices)
         if self._made > _MOST_CHOICES:
             raise FormulaError("GETPIVOTDATA has too many items to choose among", hint="type one of them")
-        found: ir.Expression = _NOTHING
+        expression: ir.Expression = _NOTHING
         for start in range(0, len(choices), _AT_ONCE):
-            found = ir.Call("SWITCH", (tree, *choices[start : start + _AT_ONCE], found))
-        return found
+            expression = ir.Call("SWITCH", (tree, *choices[start : start + _AT_ONCE], expression))
+        return expression
 
     def _cell(self, chosen: _Chosen) -> ir.Expression:
         """Return the cell that shows these items, or, alone, these and others; otherwise `#REF!`.

@@ -68,20 +68,20 @@ def _as_early_as_possible(nodes: Sequence[int], reads: Reads, few: int) -> list[
 
 def _missing(node: int, needs: Reads, done: Container[int], few: int) -> Iterable[int]:
     """Return the nodes to compute for a node, itself the last; none where they are more than a few."""
-    found: dict[int, None] = {}
+    result: dict[int, None] = {}
     open_ = [node]
     while open_:
         at = open_[-1]
         for used in needs[at]:
-            if used not in done and used not in found:
+            if used not in done and used not in result:
                 open_.append(used)
                 break
         else:
             open_.pop()
-            found[at] = None
-        if len(open_) + len(found) > few:
+            result[at] = None
+        if len(open_) + len(result) > few:
             return ()
-    return found
+    return result
 
 
 def most_waiting(order: Sequence[int], reads: Reads, keep: Iterable[int]) -> int:

@@ -64,18 +64,18 @@ def call_recursive(lowering: TreeLowering, function: Closure, arguments: Argumen
     keys = tuple(each.key for each in given)
     key = function, scope.array, keys
     values = tuple(node for each in given for node in each.values)
-    found = calls.recursive.get(key)
-    if found is None and calls.is_open(function):  # within an IF, ranges may be taken in the other way
-        found = calls.recursive.get((function, not scope.array, keys))
-    if found is None:
+    value = calls.recursive.get(key)
+    if value is None and calls.is_open(function):  # within an IF, ranges may be taken in the other way
+        value = calls.recursive.get((function, not scope.array, keys))
+    if value is None:
         if calls.any_open and any(each.values and each.key for each in given):
             raise FormulaError("a LAMBDA that calls itself hands on an array", hint="hand on a range and a number")
         if calls.is_open(function):
             raise FormulaError("a LAMBDA calls itself with ranges or functions that change", hint="use REDUCE")
-        found = _define(lowering, function, given, key, scope)
-    if found.function is None:
-        return lowering.dag.add(Apply(found.itself, values))
-    return lowering.dag.add(Apply(found.function, (*values, *found.taken)))
+        value = _define(lowering, function, given, key, scope)
+    if value.function is None:
+        return lowering.dag.add(Apply(value.itself, values))
+    return lowering.dag.add(Apply(value.function, (*values, *value.taken)))
 
 
 def _define(
@@ -83,7 +83,7 @@ def _define(
 ) -> RecursiveLambda:
     dag, calls = lowering.dag, lowering.lambda_calls
     parameters = [placeholder(dag) for each in given for _ in each.values]
-    found = calls.recursive[key] = RecursiveLambda(parameters, _marker("the LAMBDA itself"))
+    value = calls.recursive[key] = RecursiveLambda(parameters, _marker("the LAMBDA itself"))
     try:
         with calls.opening(function):
             inside = function.inside(_bind_parameters(dag, given, parameters), scope)
@@ -96,9 +96,9 @@ def _define(
         del calls.recursive[key]
         raise
     deepest = DEEPEST // (len(given) + 1)
-    body, found.taken = _body(dag, found, result, deepest)
-    found.function = Function("a LAMBDA that calls itself", (Cells(repeat=True),), partial(call_lambda, body), Kind.ANY)
-    return found
+    body, value.taken = _body(dag, value, result, deepest)
+    value.function = Function("a LAMBDA that calls itself", (Cells(repeat=True),), partial(call_lambda, body), Kind.ANY)
+    return value
 
 
 def _take_argument(lowering: TreeLowering, argument: int | Thunk | Closure, scope: Scope) -> _Given:
@@ -187,12 +187,12 @@ def _find_last_calls(steps: Mapping[int, Step], result: int) -> frozenset[int]:
             waiting += [step.yes, step.no]
         if isinstance(step, Select | SelfCall):
             path.append(slot)
-    found = set[int]()
+    results = set[int]()
     for slot in reversed(path):  # an `IF` comes before what it leads to
         step = steps[slot]
-        if isinstance(step, SelfCall) or (isinstance(step, Select) and not found.isdisjoint((step.yes, step.no))):
-            found.add(slot)
-    return frozenset(found)
+        if isinstance(step, SelfCall) or (isinstance(step, Select) and not results.isdisjoint((step.yes, step.no))):
+            results.add(slot)
+    return frozenset(results)
 
 
 def _uses(step: Step) -> tuple[int, ...]:
@@ -202,13 +202,13 @@ def _uses(step: Step) -> tuple[int, ...]:
 def _find_dependent(dag: Dag, definition: RecursiveLambda, result: int) -> list[int]:
     """Return the nodes that the result needs and that depend on the parameters or call the LAMBDA itself, in order."""
     needed = dag.upstream([result])
-    found = set(definition.parameters)
+    results = set(definition.parameters)
     for node_id in needed:
         node = dag.nodes[node_id]
         itself = isinstance(node, Apply) and node.function is definition.itself
-        if itself or not found.isdisjoint(uses(node)):
-            found.add(node_id)
-    return [node_id for node_id in needed if node_id in found and node_id not in definition.parameters]
+        if itself or not results.isdisjoint(uses(node)):
+            results.add(node_id)
+    return [node_id for node_id in needed if node_id in results and node_id not in definition.parameters]
 
 
 def _step(node: Node, itself: Function, slots: dict[int, int]) -> Step:

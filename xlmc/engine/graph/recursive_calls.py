@@ -94,12 +94,12 @@ class _Frame:
 
     def find(self, slot: int) -> Value | None:
         """Return a value that was computed here, or for more trials further out."""
-        found = self.values.get(slot)
-        if found is None and self.parent is not None and self.index is not None:
-            found = self.parent.find(slot)
-            if found is not None:
-                self.values[slot] = found = found.take(self.index)
-        return found
+        value = self.values.get(slot)
+        if value is None and self.parent is not None and self.index is not None:
+            value = self.parent.find(slot)
+            if value is not None:
+                self.values[slot] = value = value.take(self.index)
+        return value
 
     def of(self, index: Trials) -> _Frame:
         """Restrict the call to some of the trials, those of one branch."""
@@ -145,10 +145,10 @@ _MOST_RESTARTS: Final = 50
 """How often the trials that call too deep are taken out, and the others evaluated again."""
 
 
-def _single(found: Value) -> Value:
-    if isinstance(found, Ragged) or (found.numbers.ndim == 3 and found.shape[1:] != (1, 1)):
+def _single(value: Value) -> Value:
+    if isinstance(value, Ragged) or (value.numbers.ndim == 3 and value.shape[1:] != (1, 1)):
         raise FormulaError("a LAMBDA that calls itself gives an array", hint="give single values, or use REDUCE")
-    return corner(found)
+    return corner(value)
 
 
 def _too_often() -> FormulaError:
@@ -194,8 +194,8 @@ class _Run:
             answer = self._find(asked, slot)
             if answer is None:
                 self._waiting.append(self._work_out(asked, slot))
-        found: Value = answer
-        return found
+        result: Value = answer
+        return result
 
     def _call(self, values: dict[int, Value], trials: Trials, depth: int) -> Asking:
         """Run a call and the rounds that follow it."""
@@ -204,35 +204,35 @@ class _Run:
         frame = _Frame(values, trials, np.arange(trials.size), depth)
         results: list[tuple[Trials, Value]] = []
         while True:
-            found = _Round(results, [])
-            yield from self._round(frame, body.result, found, False)
+            result = _Round(results, [])
+            yield from self._round(frame, body.result, result, False)
             self.live -= frame.bytes
-            if not found.next_calls:
+            if not result.next_calls:
                 return join_trials(trials.size, results)
-            frame = self._next(frame, found.next_calls, taken)
+            frame = self._next(frame, result.next_calls, taken)
 
-    def _round(self, frame: _Frame, slot: int, found: _Round, chosen: bool) -> Asking:
+    def _round(self, frame: _Frame, slot: int, result: _Round, chosen: bool) -> Asking:
         """Follow the `IF`s to a result or to the next round. `chosen`: by an `IF`, which makes a blank 0."""
         step = self.body.steps.get(slot) if slot in self.body.last else None
         if isinstance(step, SelfCall):
-            found.next_calls.append((frame, (yield from _ask(frame, step.arguments))))
+            result.next_calls.append((frame, (yield from _ask(frame, step.arguments))))
         elif isinstance(step, Select):
             condition = yield frame, step.condition
             truth, errors = _decide(condition)
             wrong = _find_marked(errors > 0, frame)
             if wrong.size:
-                found.results.append(
+                result.results.append(
                     (frame.own_trials[wrong], Value.of_errors(np.broadcast_to(errors, frame.trials.shape)[wrong]))
                 )
             for branch, taken in ((step.yes, truth & (errors == 0)), (step.no, ~truth & (errors == 0))):
                 index = _find_marked(taken, frame)
                 if index.size:
                     inner = frame.of(index)
-                    yield from self._round(inner, branch, found, True)
+                    yield from self._round(inner, branch, result, True)
                     self.live -= 0 if inner is frame else inner.bytes
         else:
             value = yield frame, slot
-            found.results.append((frame.own_trials, zero_if_blank(value) if chosen else value))
+            result.results.append((frame.own_trials, zero_if_blank(value) if chosen else value))
 
     def _next(self, frame: _Frame, next_calls: list[tuple[_Frame, list[Value]]], taken: dict[int, Value]) -> _Frame:
         """Start the next round of a call."""
@@ -260,21 +260,21 @@ class _Run:
         step = self.body.steps[slot]
         self.work.add()
         if isinstance(step, Select):
-            found = yield from self._select(frame, step)
+            value = yield from self._select(frame, step)
         elif isinstance(step, IfErrorNode):
-            found = yield from self._if_error(frame, step)
+            value = yield from self._if_error(frame, step)
         elif isinstance(step, SelfCall):
-            found = yield from self._call_itself(frame, step)
+            value = yield from self._call_itself(frame, step)
         else:
             values = {}
             for used in uses(step):
                 values[used] = yield frame, used
-            found = evaluate_node(step, values)
-        frame.values[slot] = found
-        frame.bytes += found.nbytes
-        self.live += found.nbytes
+            value = evaluate_node(step, values)
+        frame.values[slot] = value
+        frame.bytes += value.nbytes
+        self.live += value.nbytes
         ask_for_live(self.live)
-        return found
+        return value
 
     def _call_itself(self, frame: _Frame, step: SelfCall) -> Asking:
         arguments = yield from _ask(frame, step.arguments)
@@ -287,8 +287,8 @@ class _Run:
     def _select(self, frame: _Frame, step: Select) -> Asking:
         condition = yield frame, step.condition
         truth, errors = _decide(condition)
-        found = yield from self._each(frame, [(step.yes, truth & (errors == 0)), (step.no, ~truth & (errors == 0))])
-        return evaluate_node(Select(0, 1, 1), {0: condition, 1: found})
+        value = yield from self._each(frame, [(step.yes, truth & (errors == 0)), (step.no, ~truth & (errors == 0))])
+        return evaluate_node(Select(0, 1, 1), {0: condition, 1: value})
 
     def _if_error(self, frame: _Frame, step: IfErrorNode) -> Asking:
         value = yield frame, step.value
@@ -312,11 +312,11 @@ class _Run:
 
 def _ask(frame: _Frame, slots: Sequence[int]) -> Asking:
     """Return the values of several slots."""
-    found = []
+    values = []
     for slot in slots:
         value = yield frame, slot
-        found.append(value)
-    return found
+        values.append(value)
+    return values
 
 
 def _decide(condition: Value) -> tuple[NDArray[np.bool_], Codes]:
@@ -345,9 +345,9 @@ def spread_trials(value: Value, n: int) -> Value:
 
 
 def _find_taken(frame: _Frame, slot: int) -> Value:
-    found = frame.find(slot)
-    assert found is not None, "what is taken from outside was given to the first call"
-    return found
+    value = frame.find(slot)
+    assert value is not None, "what is taken from outside was given to the first call"
+    return value
 
 
 def join_trials(n: int, parts: list[tuple[Trials, Value]]) -> Value:

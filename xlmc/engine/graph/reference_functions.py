@@ -117,12 +117,12 @@ def _count(name: str) -> Callable[[TreeLowering, Arguments, Scope], int | None]:
 
 def _is_reference(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int:
     try:
-        found = areas_of(lowering, arguments[0], scope.pointed_at()) is not None
+        value = areas_of(lowering, arguments[0], scope.pointed_at()) is not None
     except NoReference:
         return lowering.dag.constant(constant(False))
-    if not found and _may_be_reference(lowering, arguments[0], scope):
+    if not value and _may_be_reference(lowering, arguments[0], scope):
         raise FormulaError("what ISREF is asked about depends on a value that varies", hint="make that value fixed")
-    return lowering.dag.constant(constant(found))
+    return lowering.dag.constant(constant(value))
 
 
 def _may_be_reference(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> bool:
@@ -276,9 +276,9 @@ def _count_if(name: str) -> Callable[[TreeLowering, Arguments, Scope], int | Non
     """COUNTIF of a whole column: count the cells up to the last filled one; one further cell counts for all others."""
 
     def lower(lowering: TreeLowering, arguments: Arguments, scope: Scope) -> int | None:
-        found = {i: areas_of(lowering, arguments[i], scope) for i in range(0, len(arguments), 2)}
-        areas = {i: parts for i, parts in found.items() if parts is not None and len(parts) == 1}
-        if len(areas) < len(found) or not any(area.is_cut for (area,) in areas.values()):
+        result = {i: areas_of(lowering, arguments[i], scope) for i in range(0, len(arguments), 2)}
+        areas = {i: parts for i, parts in result.items() if parts is not None and len(parts) == 1}
+        if len(areas) < len(result) or not any(area.is_cut for (area,) in areas.values()):
             return None
         even = {i: area for i, (area,) in level(areas).items()}
         node = _call_with_areas(lowering, name, arguments, {i: area.filled for i, area in even.items()}, scope)
@@ -308,13 +308,13 @@ def _of_all_values(name: str, count_texts: bool = False) -> Callable[[TreeLoweri
         plain = [not _is_array(lowering, argument, scope) for argument in arguments]
         if all(plain):
             return None
-        found: list[int] = []
+        result: list[int] = []
         for argument, is_plain in zip(arguments, plain, strict=True):
             if is_plain:
-                found += lowering.whole(argument, scope.inside())
+                result += lowering.whole(argument, scope.inside())
             else:
-                found.append(_values_of_array(lowering, lowering.lower(argument, scope.over_arrays()), count_texts))
-        return lowering.apply(row_of(name), tuple(found))
+                result.append(_values_of_array(lowering, lowering.lower(argument, scope.over_arrays()), count_texts))
+        return lowering.apply(row_of(name), tuple(result))
 
     return lower
 

@@ -388,11 +388,11 @@ def find_callee(lowering: TreeLowering, tree: ir.Expression, scope: Scope) -> Ca
 
 
 def _of_variable(lowering: TreeLowering, name: str, scope: Scope) -> Callee:
-    found = scope.variables.get(name)
-    if isinstance(found, Closure):
-        return found
-    if isinstance(found, Thunk):
-        return _of_thunk(lowering, found)
+    result = scope.variables.get(name)
+    if isinstance(result, Closure):
+        return result
+    if isinstance(result, Thunk):
+        return _of_thunk(lowering, result)
     raise FormulaError("what is called here is not a LAMBDA")
 
 
@@ -434,8 +434,8 @@ def find_function(lowering: TreeLowering, argument: int | Thunk | Closure) -> Ca
 def is_omitted(tree: ir.Expression, scope: Scope) -> bool:
     """Whether a tree is a parameter for which nothing was given, here or further out."""
     while isinstance(tree, ir.Variable):
-        found = scope.variables.get(tree.name)
-        if not isinstance(found, Thunk):
+        result = scope.variables.get(tree.name)
+        if not isinstance(result, Thunk):
             return False
-        tree, scope = found.tree, found.scope
+        tree, scope = result.tree, result.scope
     return isinstance(tree, ir.Missing)

@@ -60,7 +60,7 @@ def refuse_cells_beyond(graph: Graph, dag: Dag, arrays: Mapping[Cell, int], rang
         FormulaError: a formula names some.
     """
     many = ((cell, size) for cell, node in arrays.items() if (size := dag.sizes[node]) is not None)
-    growing = [found for cell, size in many if (found := _growing(graph, cell, *size)) is not None]
+    growing = [result for cell, size in many if (result := _growing(graph, cell, *size)) is not None]
     if not growing:
         return
     for cell, tree in graph.formulas.items():
@@ -94,7 +94,7 @@ def unneeded_arrays(graph: Graph, sheets: Iterable[str], ranges: Iterable[Area])
         ranges: those that formulas read, also by OFFSET and INDIRECT.
     """
     cells = [cell for sheet in sheets for cell in _unneeded_on(graph, sheet)]
-    growing = [found for cell in cells if (found := _growing(graph, cell, *MANY)) is not None]
+    growing = [result for cell in cells if (result := _growing(graph, cell, *MANY)) is not None]
     if not growing:
         return []
     named = {*ranges, *(named for tree in graph.formulas.values() for named in references(tree))}
@@ -102,8 +102,8 @@ def unneeded_arrays(graph: Graph, sheets: Iterable[str], ranges: Iterable[Area])
 
 
 def _unneeded_on(graph: Graph, sheet: str) -> Iterator[Cell]:
-    found = graph.workbook.sheets.get(sheet)
-    for at, content in () if found is None else found.cells.items():
+    result = graph.workbook.sheets.get(sheet)
+    for at, content in () if result is None else result.cells.items():
         if content.formula is not None and content.formula.dynamic and Cell(sheet, *at) not in graph.formulas:
             yield Cell(sheet, *at)
 

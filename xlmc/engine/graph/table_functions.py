@@ -62,8 +62,8 @@ def table_function_of(dag: Dag, node: int, last_only: Container[str] = ()) -> Ta
         of = dag.nodes[at]
         if type(of) is not Apply:
             return None
-        if links and isinstance(found := lookup_of(dag, of), Pick):
-            return _chain(dag, at, of, found, links[::-1])
+        if links and isinstance(result := lookup_of(dag, of), Pick):
+            return _chain(dag, at, of, result, links[::-1])
         if of.function.name in last_only if links else of.function.ufunc in _QUICK:
             return None
         further = _varying_argument(dag, at, of)

@@ -34,23 +34,23 @@ def without_totals(name: str) -> Callable[[TreeLowering, Arguments, Scope], int 
         function = function_named(name)
         if function is None or len(arguments) <= first:
             return None
-        found = [lowering.lower(argument, scope) for argument in arguments[:first]]
-        skipped = _find_skips(lowering, name, found)
+        result = [lowering.lower(argument, scope) for argument in arguments[:first]]
+        skipped = _find_skips(lowering, name, result)
         nested = name == "SUBTOTAL" or (None if skipped is None else skipped.nested)
-        ranked = name == "AGGREGATE" and _is_ranked(lowering, found[0])
+        ranked = name == "AGGREGATE" and _is_ranked(lowering, result[0])
         for position, argument in enumerate(arguments[first:]):
             if name == "SUBTOTAL" and isinstance(argument, ir.ErrorLiteral):
                 return lowering.error(argument.code)
             is_rank = ranked and position == 1
             areas = None if is_rank else areas_of(lowering, argument, scope)
             if areas is None:
-                found.append(lowering.lower(argument, scope.over_arrays()))
+                result.append(lowering.lower(argument, scope.over_arrays()))
             elif ranked and len(areas) > 1:
                 return lowering.error(ErrorCode.VALUE)
             else:
-                found += [_range_that_counts(lowering, area, skipped, nested) for area in areas]
-        by_rank = len(found) == 4 and name == "AGGREGATE" and lowering.dag.sizes[found[3]] not in (None, (1, 1))
-        return _apply_to_ranks(lowering, function, found) if by_rank else lowering.apply(function, tuple(found))
+                result += [_range_that_counts(lowering, area, skipped, nested) for area in areas]
+        by_rank = len(result) == 4 and name == "AGGREGATE" and lowering.dag.sizes[result[3]] not in (None, (1, 1))
+        return _apply_to_ranks(lowering, function, result) if by_rank else lowering.apply(function, tuple(result))
 
     return lower
 
@@ -67,17 +67,17 @@ def _is_ranked(lowering: TreeLowering, number: int) -> bool | None:
     return int(known.numbers[0]) in _OF_A_RANK if known is not None and known.plain else None
 
 
-def _apply_to_ranks(lowering: TreeLowering, function: Function, found: Sequence[int]) -> int:
+def _apply_to_ranks(lowering: TreeLowering, function: Function, result: Sequence[int]) -> int:
     """AGGREGATE of a range and many cells: where these are ranks, one result for each of them."""
-    ranked = _is_ranked(lowering, found[0])
+    ranked = _is_ranked(lowering, result[0])
     if ranked is None:
-        return lowering.apply(_mark_spilling(function), tuple(found))
+        return lowering.apply(_mark_spilling(function), tuple(result))
     if not ranked:
-        return lowering.apply(function, tuple(found))
+        return lowering.apply(function, tuple(result))
     cells = cell_by_cell(
-        lowering.dag, (found[3],), lambda rank: lowering.apply(function, (*found[:3], *rank)), constants=True
+        lowering.dag, (result[3],), lambda rank: lowering.apply(function, (*result[:3], *rank)), constants=True
     )
-    return lowering.apply(_mark_spilling(function), tuple(found)) if cells is None else cells
+    return lowering.apply(_mark_spilling(function), tuple(result)) if cells is None else cells
 
 
 @cache

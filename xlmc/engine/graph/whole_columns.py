@@ -89,15 +89,15 @@ class _Call:
 
     def cut(self) -> list[Area]:
         """All ranges that are cut."""
-        found: list[Area] = []
+        result: list[Area] = []
 
         def note(area: Area) -> Area:
-            found.append(area)
+            result.append(area)
             return area
 
         for i in self.mixed:
             change_exposed(self.lowering, self.arguments[i], self.scope, note)
-        return found + [area for areas in self.direct.values() for area in areas if area.is_cut]
+        return result + [area for areas in self.direct.values() for area in areas if area.is_cut]
 
 
 def lower_call(
@@ -118,8 +118,8 @@ def lower_call(
     """
     ranged = [i for i in range(len(arguments)) if function.parameter(i).ranged]
     scopes = {i: scope.of(function.parameter(i).ranges) for i in ranged}
-    found = {i: find_areas(lowering, arguments[i], scopes[i]) for i in ranged}
-    direct = {i: areas for i, areas in found.items() if areas is not None}
+    result = {i: find_areas(lowering, arguments[i], scopes[i]) for i in ranged}
+    direct = {i: areas for i, areas in result.items() if areas is not None}
     computed = [i for i in ranged if i not in direct and (scopes[i].array or _is_index(arguments[i]))]
     mixed = tuple(i for i in computed if has_exposed(lowering, arguments[i], scopes[i]))
     if not mixed and not any(area.is_cut for areas in direct.values() for area in areas):
@@ -376,12 +376,12 @@ def _kinds(call: _Call, tree: ir.Expression) -> set[tuple[int, float]] | None:
     dag = call.lowering.dag
     node = dag.nodes[call.lowering.lower(tree, call.scope)]
     cells = [dag.nodes[cell] for row in node.rows for cell in row] if isinstance(node, Range) else [node]
-    found: set[tuple[int, float]] = set()
+    result: set[tuple[int, float]] = set()
     for cell in cells:
         if not isinstance(cell, Constant):
             return None
-        found |= set(zip(cell.value.kinds.ravel().tolist(), cell.value.numbers.ravel().tolist(), strict=True))
-    return found
+        result |= set(zip(cell.value.kinds.ravel().tolist(), cell.value.numbers.ravel().tolist(), strict=True))
+    return result
 
 
 def _is_ignored(call: _Call, tree: ir.Expression) -> bool:

@@ -177,12 +177,12 @@ class NativeBlockRunner:
             targets = list(self._targets(into))
             addresses = np.array([_address_of(array) for _, array in targets], np.uint64)
             self._words[np.array([at for at, _ in targets], np.intp)] = addresses
-        found = self._run_chunks(trials)
-        if found is None:
+        result = self._run_chunks(trials)
+        if result is None:
             self._careful += 1
             self._wrong.fill(0)
             return None
-        return self._result(start, inputs, into, drawn, *found)
+        return self._result(start, inputs, into, drawn, *result)
 
     def _run_chunks(self, trials: int) -> tuple[int, Counts, Counts] | None:
         """How many of the first trials are kept; of the filters that may reject, what pairs do, and each alone.

@@ -163,11 +163,11 @@ class Body:
 
     def _check(self, part: Operand) -> None:
         """Add a number that may be infinite or NaN to the running sum, once; the module's docstring says why."""
-        node, found = self._source(part)
-        if not found.fallible or any((node, context) in self._checked for context in self._context.outwards()):
+        node, loaded = self._source(part)
+        if not loaded.fallible or any((node, context) in self._checked for context in self._context.outwards()):
             return
         self._checked.add((node, self._context))
-        self._add(found.value)
+        self._add(loaded.value)
 
     def _add(self, value: Any) -> None:
         zero, so_far = self.number(0.0), self._sums.get(self._context)
@@ -198,12 +198,12 @@ def _branch(trials: TrialSet, select: int, branch: int) -> TrialSet:
 
 def contexts(dag: Dag, rules: Mapping[int, LoopRule], results: Sequence[int]) -> dict[int, TrialSet]:
     """Find the context of every node that `rules` computes, `results` being needed in all trials."""
-    found: dict[int, TrialSet] = {node: ALL_TRIALS for node in results if node in rules}
+    result: dict[int, TrialSet] = {node: ALL_TRIALS for node in results if node in rules}
     for node in sorted(rules, reverse=True):
-        for used, context in _edges(dag, node, rules[node], found.get(node, ALL_TRIALS)):
+        for used, context in _edges(dag, node, rules[node], result.get(node, ALL_TRIALS)):
             if used in rules:
-                found[used] = common_set(found.get(used), context)
-    return found
+                result[used] = common_set(result.get(used), context)
+    return result
 
 
 def _edges(dag: Dag, node_id: int, rule: LoopRule, context: TrialSet) -> Iterator[tuple[int, TrialSet]]:

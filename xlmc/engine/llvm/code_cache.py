@@ -112,11 +112,11 @@ def _caches() -> Path:
     return Path(given) if os.path.isabs(given) else Path.home() / ".cache"
 
 
-def _is_own(found: os.stat_result, is_kind: Callable[[int], bool], others: int) -> bool:
+def _is_own(status: os.stat_result, is_kind: Callable[[int], bool], others: int) -> bool:
     """Whether it is of that kind, this user's, and closed to others; Windows keeps others out by other means."""
-    if not is_kind(found.st_mode):
+    if not is_kind(status.st_mode):
         return False
-    return sys.platform == "win32" or (found.st_uid == os.getuid() and not stat.S_IMODE(found.st_mode) & others)
+    return sys.platform == "win32" or (status.st_uid == os.getuid() and not stat.S_IMODE(status.st_mode) & others)
 
 
 def _remove_oldest(folder: Path) -> None:
@@ -125,10 +125,10 @@ def _remove_oldest(folder: Path) -> None:
     with suppress(OSError), os.scandir(folder) as entries:
         for entry in entries:
             with suppress(OSError):  # another program removed it
-                found = entry.stat(follow_symlinks=False)
+                status = entry.stat(follow_symlinks=False)
                 if entry.name.endswith(_SUFFIX):
-                    files.append((found.st_mtime, found.st_size, entry.path))
-                elif entry.name.endswith(_UNFINISHED) and now - found.st_mtime > _HOUR:
+                    files.append((status.st_mtime, status.st_size, entry.path))
+                elif entry.name.endswith(_UNFINISHED) and now - status.st_mtime > _HOUR:
                     os.unlink(entry.path)
     size = sum(size for _, size, _ in files)
     for _, each, path in sorted(files):

@@ -63,14 +63,14 @@ def _search(body: Emitter, search: Search, key: Any) -> Any:
     builder = body.builder
     key = key if search.sign > 0 else builder.fneg(key)
     if search.step:
-        found = _by_division(body, search, key)
+        value = _by_division(body, search, key)
     else:
-        found = _by_halves(body, search, key, "<" if search.positions is not None else "<=")
+        value = _by_halves(body, search, key, "<" if search.positions is not None else "<=")
     if search.positions is None:
         body.flag(builder.fcmp_unordered("<", key, body.number(float(search.rising[0]))))
-        return builder.sitofp(found, body.real)
-    body.flag(builder.fcmp_unordered("!=", key, ConstantColumn(body, search.rising).at(found)))
-    return ConstantColumn(body, search.positions.astype(float)).at(found)
+        return builder.sitofp(value, body.real)
+    body.flag(builder.fcmp_unordered("!=", key, ConstantColumn(body, search.rising).at(value)))
+    return ConstantColumn(body, search.positions.astype(float)).at(value)
 
 
 def _by_division(body: Emitter, search: Search, key: Any) -> Any:
@@ -84,21 +84,21 @@ def _by_division(body: Emitter, search: Search, key: Any) -> Any:
     steps = builder.fmul(builder.fsub(inside, body.number(first)), body.number(1.0 / search.step))
     guess = builder.fptosi(steps, _INDEX)
     below = builder.zext(builder.fcmp_ordered("<", inside, rising.at(guess)), _INDEX)
-    found = builder.add(builder.sub(guess, below), _INDEX(1))
-    beyond = builder.zext(builder.fcmp_ordered(">=", inside, rising.at(found)), _INDEX)
-    return builder.add(found, beyond)
+    value = builder.add(builder.sub(guess, below), _INDEX(1))
+    beyond = builder.zext(builder.fcmp_ordered(">=", inside, rising.at(value)), _INDEX)
+    return builder.add(value, beyond)
 
 
 def _by_halves(body: Emitter, search: Search, key: Any, relation: str) -> Any:
     """How many numbers stand in that relation to the key, which those at the front do."""
     builder, size = body.builder, search.rising.size - 1
     rising = ConstantColumn(body, search.rising)
-    found, half = _INDEX(0), 1 << (size.bit_length() - 1)
+    value, half = _INDEX(0), 1 << (size.bit_length() - 1)
     while half:
-        reach = builder.add(found, _INDEX(half))
+        reach = builder.add(value, _INDEX(half))
         inside = builder.icmp_signed("<=", reach, _INDEX(size))
         index = builder.select(inside, builder.sub(reach, _INDEX(1)), _INDEX(size))
         holds = builder.fcmp_ordered(relation, rising.at(index), key)
-        found = builder.select(holds, reach, found)
+        value = builder.select(holds, reach, value)
         half //= 2
-    return found
+    return value

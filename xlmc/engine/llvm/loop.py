@@ -163,9 +163,9 @@ def loop_over_trials(
 def _interleaved(module: ir.Module, side_by_side: int) -> Any:
     """Ask LLVM to compute so many vectors of trials side by side; with 0, one trial after another."""
     name, asked = ("interleave.count", ir.IntType(32)(side_by_side)) if side_by_side else ("vectorize.enable", _BIT(0))
-    found = module.add_metadata([module.add_metadata([ir.MetaDataString(module, f"llvm.loop.{name}"), asked])])
-    found.operands = (found, *found.operands)  # LLVM wants the first to be itself, so that no two loops share one
-    return found
+    value = module.add_metadata([module.add_metadata([ir.MetaDataString(module, f"llvm.loop.{name}"), asked])])
+    value.operands = (value, *value.operands)  # LLVM wants the first to be itself, so that no two loops share one
+    return value
 
 
 def _load(builder: ir.IRBuilder, pointer: Any, i: Any) -> Any:

@@ -76,12 +76,12 @@ class Arithmetic:
         if not self._fused:
             return self.div(x, self.number(divisor)), None
         reciprocal = self.number(1.0 / divisor)
-        product = found = self.mul(x, reciprocal)
+        product = value = self.mul(x, reciprocal)
         for _ in range(2):
-            found = self.plus(found, self.minus(x, found, self.number(divisor)), reciprocal)
+            value = self.plus(value, self.minus(x, value, self.number(divisor)), reciprocal)
         one, twice = self.whole(1), self.shift_left(self.bits(x), 1)  # without its sign
         tiny = self._builder.icmp_unsigned("<", self.sub_bits(twice, one), self.whole(_TINY_DIVIDEND_BITS << 1))
-        return self.with_sign_of(product, self.size(found)), tiny  # a zero has lost its sign
+        return self.with_sign_of(product, self.size(value)), tiny  # a zero has lost its sign
 
     def size(self, x: Any) -> Any:
         return self._intrinsic("llvm.fabs", x)

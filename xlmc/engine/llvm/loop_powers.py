@@ -73,9 +73,9 @@ def _exponential(do: Arithmetic, x: Any, more: Any) -> Any:
     first, lost = _ordered_sum(do, do.number(1.0), r)
     lost = do.add(lost, rest)
     mantissa = do.add(first, do.plus(lost, do.mul(r, r), _polynomial(do, r, _EXPONENTIAL)))
-    found = do.from_bits(do.add_bits(do.bits(mantissa), do.shift_left(do.bits(shifted), _MANTISSA)))
-    found = do.select(do.above(do.number(_LEAST), x), do.number(0.0), found)
-    return do.select(do.above(x, do.number(_MOST)), do.number(math.inf), found)
+    value = do.from_bits(do.add_bits(do.bits(mantissa), do.shift_left(do.bits(shifted), _MANTISSA)))
+    value = do.select(do.above(do.number(_LEAST), x), do.number(0.0), value)
+    return do.select(do.above(x, do.number(_MOST)), do.number(math.inf), value)
 
 
 def logarithm(do: Arithmetic, x: Any) -> Any:

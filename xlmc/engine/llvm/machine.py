@@ -49,8 +49,8 @@ class NativeLoop:
         self._call = ctypes.CFUNCTYPE(ctypes.c_int64, ctypes.c_void_p, ctypes.c_int64)(address)
 
     def __call__(self, addresses: Any, n: int) -> int:
-        found: int = self._call(addresses, n)
-        return found
+        value: int = self._call(addresses, n)
+        return value
 
 
 class Machine:
@@ -78,8 +78,8 @@ class Machine:
 
     def _target(self) -> Any:
         """Make a new target machine each time, for the compiled code takes it over."""
-        found = binding.Target.from_default_triple()
-        return found.create_target_machine(cpu=self._cpu, features=self._features, opt=_SPEED_LEVEL)
+        value = binding.Target.from_default_triple()
+        return value.create_target_machine(cpu=self._cpu, features=self._features, opt=_SPEED_LEVEL)
 
     def native(self, module: ir.Module, name: str) -> NativeLoop:
         """Compile the function `name` of a module to native code that runs without holding Python's lock.
@@ -122,9 +122,9 @@ def this_machine() -> Machine:
     """
     binding.initialize_native_target()
     binding.initialize_native_asmprinter()
-    found = binding.get_host_cpu_features()
-    wide = ",-prefer-256-bit" if found.get("avx512f") else ",+fast-gather" if found.get("avx2") else ""
-    return Machine(binding.get_host_cpu_name(), found.flatten() + wide)
+    value = binding.get_host_cpu_features()
+    wide = ",-prefer-256-bit" if value.get("avx512f") else ",+fast-gather" if value.get("avx2") else ""
+    return Machine(binding.get_host_cpu_name(), value.flatten() + wide)
 
 
 machine = cache(this_machine)

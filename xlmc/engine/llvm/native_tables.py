@@ -51,7 +51,7 @@ def rules_of_looked_up(
         alike[_functions(chain, rules)].add(chain.key)
     forms, compiled = Forms(rules, dag.types), dict[object, NativeLoop]()
     known: dict[object, Emit | None] = {}
-    found: dict[int, LoopRule] = {}
+    result: dict[int, LoopRule] = {}
     for node, chain in chains.items():
         if len(alike[_functions(chain, rules)]) > _MOST_ALIKE:
             continue
@@ -60,8 +60,8 @@ def rules_of_looked_up(
             known[chain.key] = None if values is None else emit_lookup(Pick.of(values))
         emit = known[chain.key]
         if emit is not None:
-            found[node] = rule_of_lookup(chain.position, emit)
-    return found
+            result[node] = rule_of_lookup(chain.position, emit)
+    return result
 
 
 def _functions(chain: TableFunction, rules: Mapping[int, LoopRule]) -> object:

@@ -158,10 +158,10 @@ def _quotient(body: Emitter, parts: Sequence[Any]) -> Any:
     known = divisor.constant if isinstance(divisor, ir.Constant) else 0.0
     if not _LEAST_DIVISOR <= abs(known) <= 1 / _LEAST_DIVISOR:
         return body.builder.fdiv(dividend, divisor)
-    found, too_small = body.of_doubles(Arithmetic.quotient, dividend, known)
+    value, too_small = body.of_doubles(Arithmetic.quotient, dividend, known)
     if too_small is not None:
         body.flag(too_small)
-    return found
+    return value
 
 
 def _comparison(relation: str) -> _Row:
@@ -343,10 +343,10 @@ def _power_of_constant(positive: bool, whole: bool, odd: bool) -> Emit:
             body.flag(compare("<", base, zero))
         if not positive:
             body.flag(compare("==", base, zero))
-        found = body.of_doubles(power, body.intrinsic("llvm.fabs", base), exponent)
+        value = body.of_doubles(power, body.intrinsic("llvm.fabs", base), exponent)
         if positive:
-            found = body.builder.select(compare("==", base, zero), zero, found)
-        return body.intrinsic("llvm.copysign", found, base) if odd else found
+            value = body.builder.select(compare("==", base, zero), zero, value)
+        return body.intrinsic("llvm.copysign", value, base) if odd else value
 
     return emit
 

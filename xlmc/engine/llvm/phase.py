@@ -165,9 +165,9 @@ class Phase:
         ]
         self._last_read = stages.last_reads()
         outside = [() if isinstance(step, Loop) else step for step in self._steps]
-        found = {node: _compiled(self._dag.nodes[node]) for nodes in outside for node in nodes}
-        self._native = {node: each for node, each in found.items() if each is not None}
-        plain = [node for node in found if node not in self._native and self._is_plain(node)]
+        result = {node: _compiled(self._dag.nodes[node]) for nodes in outside for node in nodes}
+        self._native = {node: each for node, each in result.items() if each is not None}
+        plain = [node for node in result if node not in self._native and self._is_plain(node)]
         self._plain = {node: make_step(self._dag, node, 0) for node in plain}
         self.slots = stages.slots(
             [
@@ -268,10 +268,10 @@ class Phase:
             return False
         known: dict[int, Any] = {}
         for used in self._stages.reads[node_id]:
-            found = trials.plain(used)
-            if found is None:
+            mask = trials.plain(used)
+            if mask is None:
                 return False
-            known[used] = found
+            known[used] = mask
         underflow = Underflow()
         frame = Frame(known, [memory.of(node_id, trials.n)], trials.n, underflow)
         try:

@@ -75,16 +75,16 @@ class _Needed(NamedTuple):
     def of(cls, dag: Dag, targets: Sequence[int]) -> _Needed:
         """Those of these targets."""
         rules: dict[int, LoopRule] = {}
-        found: dict[int, tuple[int, ...]] = {}
+        result: dict[int, tuple[int, ...]] = {}
 
         def read(node: int) -> tuple[int, ...]:
             rule = loop_rule_of(dag, node)
             if rule is not None:
                 rules[node] = rule
-            found[node] = reads(dag, node, rule)
-            return found[node]
+            result[node] = reads(dag, node, rule)
+            return result[node]
 
-        return cls(dag.upstream(targets, read), rules, found)
+        return cls(dag.upstream(targets, read), rules, result)
 
     def looking_up(self, dag: Dag) -> _Needed:
         """Return a lowering where functions of numbers of tables are looked up; some of its nodes may not be needed any
@@ -275,14 +275,14 @@ class _JitEvaluator:
 def _correct(columns: Sequence[Column], again: NDArray[np.intp], careful: Sequence[Column]) -> list[Column]:
     """Return the columns (n,) with the trials `again` (k,) as the careful path has them (k,)."""
     corrected = []
-    for column, found in zip(columns, careful, strict=True):
+    for column, result in zip(columns, careful, strict=True):
         values = column.values.copy()
         codes = np.zeros(values.size, np.uint8) if column.codes is None else np.array(column.codes)
-        values[again] = found.values
-        codes[again] = 0 if found.codes is None else found.codes
+        values[again] = result.values
+        codes[again] = 0 if result.codes is None else result.codes
         texts = column.texts
-        if found.texts is not None:
+        if result.texts is not None:
             texts = np.full(values.size, "", object) if texts is None else np.array(texts)
-            texts[again] = found.texts
+            texts[again] = result.texts
         corrected.append(Column(values, codes if codes.any() else None, texts))
     return corrected

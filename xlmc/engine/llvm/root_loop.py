@@ -65,11 +65,11 @@ class RootLoop:
             low: `(n,)` the lower end of each trial's range; NaN for a trial without one.
             high: `(n,)` the upper end.
         """
-        roots, found = np.empty(low.size), np.zeros(low.size, np.uint8)
+        roots, values = np.empty(low.size), np.zeros(low.size, np.uint8)
         columns = [np.ascontiguousarray(each) for each in (low, high, *(given[name] for name in self._names))]
-        addresses = [each.ctypes.data for each in (*columns, roots, found)]
+        addresses = [each.ctypes.data for each in (*columns, roots, values)]
         self._code((ctypes.c_void_p * len(addresses))(*addresses), low.size)
-        return roots, found.view(np.bool_)
+        return roots, values.view(np.bool_)
 
 
 def root_loop(program: RepeatedProgram) -> RootLoop | None:
@@ -106,12 +106,12 @@ def _write(module: ir.Module, program: RepeatedProgram, rules: Mapping[int, Loop
     arrays = [Kind.NUMBER] * (len(program.inputs) + 3) + [Kind.LOGICAL]
 
     def trial(builder: ir.IRBuilder, pointers: Sequence[Any], i: Any) -> None:
-        *read, roots, found = (builder.gep(pointer, [i]) for pointer in pointers)
+        *read, roots, value = (builder.gep(pointer, [i]) for pointer in pointers)
         low, high, *given = map(builder.load, read)
         known = dict(zip(program.inputs, given, strict=True))
         root, solved = _Search(program, rules, builder, known).root(low, high)
         builder.store(root, roots)
-        builder.store(builder.zext(solved, _BYTE), found)
+        builder.store(builder.zext(solved, _BYTE), value)
 
     write_entry(module, loop_over_trials(module, arrays, trial), machine())
 
@@ -145,8 +145,8 @@ class _Search:
             ends = tuple(b.select(here, new, old) for new, old in zip((left, at, before, value), ends, strict=True))
             before, positive = value, above
         fine = b.and_(fine, b.icmp_unsigned("==", crossings, _LONG(1)))
-        found, solved = self._interpolate(*ends)
-        return found, b.and_(b.and_(fine, solved), b.not_(self._wrong))
+        result, solved = self._interpolate(*ends)
+        return result, b.and_(b.and_(fine, solved), b.not_(self._wrong))
 
     def _interpolate(self, low: Any, high: Any, f0: Any, f1: Any) -> tuple[Any, Any]:
         """Emit the steps, as `roots._solve` goes through them."""
@@ -155,7 +155,7 @@ class _Search:
         x1, before = high, b.fsub(high, low)
         slope = b.fdiv(before, b.fsub(f1, f0))
         x = b.fsub(x1, b.fmul(f1, slope))
-        found, solved = x, _BIT(0)
+        value, solved = x, _BIT(0)
         for step in range(INTERPOLATIONS):
             x = self._of("minnum", self._of("maxnum", x, low), high)
             fx = self._difference(x, unless=solved)
@@ -173,13 +173,13 @@ class _Search:
             done = b.and_(b.or_(done, exact), b.fcmp_ordered("<=", self._of("fabs", fx), small))
             most = b.select(exact, zero, most)
             nearer = self._of("minnum", self._of("maxnum", change, b.fneg(most)), most)
-            found = b.select(solved, found, b.fsub(x, nearer))
+            value = b.select(solved, value, b.fsub(x, nearer))
             solved = b.or_(solved, done)
             least = b.fmul(_DOUBLE(2.0), last)
             size = b.select(b.fcmp_unordered(">", size, least), size, least)
             x1, f0, f1, before = x, f1, fx, size
             x = b.fsub(x1, self._of("copysign", size, change))
-        return found, solved
+        return value, solved
 
     def _difference(self, at: Any, unless: Any = None) -> Any:
         """Emit the difference of the targets; note where anything may be wrong, unless it does not matter there."""

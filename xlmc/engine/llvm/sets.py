@@ -68,9 +68,9 @@ def _members(dag: Dag, node: Apply) -> _Members:
             members.counting.append(part)
             continue
         for cell in cells:
-            found = _counted(dag, cell, kind)
-            if found is not None:
-                members.counting.append(found)
+            expression = _counted(dag, cell, kind)
+            if expression is not None:
+                members.counting.append(expression)
             elif isinstance(cell, int):
                 members.beside.append(Operand(cell, dag.types[cell]))
     return members
@@ -113,10 +113,10 @@ def _counted(dag: Dag, cell: int | Value, kind: Kind) -> Part | None:
 
 
 def _counted_constant(cell: Value, kind: Kind) -> Literal | None:
-    found, number = int(cell.kinds.flat[0]), float(cell.numbers.flat[0])
-    if found in (BLANK, TEXT) or (found == LOGICAL and kind is Kind.NUMBER):
+    value, number = int(cell.kinds.flat[0]), float(cell.numbers.flat[0])
+    if value in (BLANK, TEXT) or (value == LOGICAL and kind is Kind.NUMBER):
         return None
-    if found not in (NUMBER, LOGICAL):
+    if value not in (NUMBER, LOGICAL):
         raise _NotForTheLoopError
     return Literal(number if kind is Kind.NUMBER else number != 0)
 
@@ -147,9 +147,9 @@ def _sum_of_products(dag: Dag, node: Apply) -> LoopRule | None:
         for cell in cells:
             if isinstance(cell, Value) and int(cell.kinds.flat[0]) == TEXT and len(cells) == 1:
                 return None  # the careful path knows what Excel makes of it
-            found = _counted(dag, cell, Kind.NUMBER)
-            parts.append(Literal(0.0) if found is None else found)
-            if found is None and isinstance(cell, int):
+            expression = _counted(dag, cell, Kind.NUMBER)
+            parts.append(Literal(0.0) if expression is None else expression)
+            if expression is None and isinstance(cell, int):
                 beside.append(Operand(cell, dag.types[cell]))
         columns.append(parts)
     height = len(columns[0])

@@ -49,7 +49,7 @@ class Forms:
     def of(self, nodes: Sequence[int]) -> tuple[int, ...]:
         """Give the nodes that are computed in this order their numbers."""
         at: dict[int, int] = {}
-        found: list[int] = []
+        result: list[int] = []
         for position, node in enumerate(nodes):
             at[node] = position
             rule = self._rules[node]
@@ -60,8 +60,8 @@ class Forms:
                     form += part.kind, distance if distance < LONGEST else 0
                 else:
                     form.append(None if is_number(part) else part)
-            found.append(self._known.setdefault(tuple(form), len(self._known)))
-        return tuple(found)
+            result.append(self._known.setdefault(tuple(form), len(self._known)))
+        return tuple(result)
 
 
 def cut(forms: Sequence[int]) -> list[slice]:

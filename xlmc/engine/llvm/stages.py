@@ -45,7 +45,7 @@ class LoopPlan:
     @property
     def slots(self) -> dict[tuple[int, int], int]:
         """(node, position of the operand) -> index of a number that the code may read from memory."""
-        operands = ((node, *found) for node, rule in self.rules.items() for found in enumerate(rule.operands))
+        operands = ((node, *expression) for node, rule in self.rules.items() for expression in enumerate(rule.operands))
         numbers = ((node, position) for node, position, part in operands if is_number(part))
         return {slot: at for at, slot in enumerate(numbers)}
 
@@ -127,10 +127,10 @@ class Stages:
         """Return the stage after which nothing reads them -> nodes that are computed outside of loops."""
         outside = {node for stage in self.in_order if stage.stores is None for node in stage.nodes} - self.outputs
         last = {node: at for at, stage in enumerate(self.in_order) for node in outside.intersection(stage.read)}
-        found: dict[int, list[int]] = {}
+        result: dict[int, list[int]] = {}
         for node, at in last.items():
-            found.setdefault(at, []).append(node)
-        return found
+            result.setdefault(at, []).append(node)
+        return result
 
     def _read_by(self, group: Sequence[int]) -> frozenset[int]:
         return frozenset(chain.from_iterable(map(self.reads.__getitem__, group))).difference(group)
@@ -187,9 +187,9 @@ def _groups(
 
 def _cut(nodes: Sequence[int], forms: Forms) -> Iterator[tuple[tuple[int, ...], tuple[int, ...]]]:
     """Return the nodes of loops, with their forms."""
-    found = forms.of(nodes)
-    for part in cut(found):
-        yield tuple(nodes[part]), found[part]
+    result = forms.of(nodes)
+    for part in cut(result):
+        yield tuple(nodes[part]), result[part]
 
 
 class _Group(NamedTuple):

@@ -93,7 +93,7 @@ class Placement:
         for node_ids, trials in ((first, ALL_TRIALS), (late, SURVIVORS)):
             for node_id in node_ids:
                 wanted[node_id] = common_set(wanted[node_id], trials)
-        found: dict[int, TrialSet] = {}
+        result: dict[int, TrialSet] = {}
         for node_id in range(len(nodes) - 1, -1, -1):
             at = wanted[node_id]
             node = nodes[node_id]
@@ -101,7 +101,7 @@ class Placement:
                 continue
             if type(node) is Input:
                 at = next(outer for outer in at.outwards() if outer.select < 0)  # draws are there for all trials
-            found[node_id] = at
+            result[node_id] = at
             self.reads[node_id] = read = reads(self._dag, node_id)
             if type(node) is Select and at.depth < DEEPEST_BRANCHES and _divides(types[node_id], types[node.condition]):
                 edges = [(node.condition, at), (node.yes, at.taking(node_id, 1)), (node.no, at.taking(node_id, 0))]
@@ -111,7 +111,7 @@ class Placement:
             for used in read:
                 if wanted[used] is not at:
                     wanted[used] = common_set(wanted[used], at)
-        return found
+        return result
 
 
 def _divides(result: Kind, condition: Kind) -> bool:
@@ -178,14 +178,14 @@ class _Branch:
         """
         values = frame.values
         whole = [values[node] for node in self._outside]
-        for node, found in zip(self._outside, whole, strict=True):
-            values[node] = found.take(index) if isinstance(found, Value) else found[index]
+        for node, value in zip(self._outside, whole, strict=True):
+            values[node] = value.take(index) if isinstance(value, Value) else value[index]
         inner = Frame(values, (), index.size, frame.underflow)
         for step in self._steps:
             step(inner)
         result = values[self._result]
-        for node, found in zip(self._outside, whole, strict=True):
-            values[node] = found
+        for node, value in zip(self._outside, whole, strict=True):
+            values[node] = value
         return result
 
 

@@ -42,7 +42,7 @@ def find_looked_up(dag: Dag, sets: Sequence[Sequence[int]]) -> dict[int, LookedU
         dag: of the nodes.
         sets: nodes that are computed on the same trials.
     """
-    found: dict[int, LookedUp] = {}
+    result: dict[int, LookedUp] = {}
     known: dict[object, Pick | None] = {}
     for nodes in sets:
         # Whether a sine is one of a pair decides its last bit: no other function is looked up through it.
@@ -54,8 +54,8 @@ def find_looked_up(dag: Dag, sets: Sequence[Sequence[int]]) -> dict[int, LookedU
                 known[key] = _table(dag, chain, paired=node in pairs)
             pick = known[key]
             if pick is not None:
-                found[node] = LookedUp(pick, chain.position)
-    return found
+                result[node] = LookedUp(pick, chain.position)
+    return result
 
 
 def _table(dag: Dag, chain: TableFunction, *, paired: bool) -> Pick | None:

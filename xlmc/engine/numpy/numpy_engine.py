@@ -152,8 +152,8 @@ class NumpyProgram:
         return [_column(frame.values[node], survivors.size) for node in self._forecasts]
 
     def _inputs(self, trials: TrialSet) -> list[tuple[int, str]]:
-        found = [(node, self._dag.nodes[node]) for node in self._placement.members(trials)]
-        return [(node, input_.name) for node, input_ in found if isinstance(input_, Input)]
+        result = [(node, self._dag.nodes[node]) for node in self._placement.members(trials)]
+        return [(node, input_.name) for node, input_ in result if isinstance(input_, Input)]
 
     def _steps(self, trials: TrialSet, keep: set[int], free_at_end: Sequence[int]) -> list[Step]:
         """Make the steps of one set of trials; the values of `keep` are read after them."""
@@ -184,14 +184,14 @@ class NumpyProgram:
     def _look_up_functions(self) -> None:
         """Look up what are functions of a number of a table, where blocks are of the largest size either way."""
         sets = [self._placement.members(trials) for trials in (ALL_TRIALS, SURVIVORS)]
-        found = find_looked_up(self._dag, sets)
-        if not found:
+        result = find_looked_up(self._dag, sets)
+        if not result:
             return
         before, results = self._placement, [*self._filters, *self._forecasts]
         if self._waiting() <= _FEW_WAITING:
-            self._placement = before.reading_less({node: (each.position,) for node, each in found.items()}, results)
+            self._placement = before.reading_less({node: (each.position,) for node, each in result.items()}, results)
             if self._waiting() <= _FEW_WAITING:
-                self._looked_up = found
+                self._looked_up = result
             else:
                 self._placement = before
 
@@ -280,20 +280,20 @@ class _Space:
 
 
 def _gather(frame: Frame, node: int, buffer: int | None, survivors: NDArray[np.intp]) -> Any:
-    found = frame.values[node]
-    if isinstance(found, Value):
-        return found.take(survivors)
+    value = frame.values[node]
+    if isinstance(value, Value):
+        return value.take(survivors)
     if buffer is None:
-        return found[survivors]
-    if survivors.size == found.size:
+        return value[survivors]
+    if survivors.size == value.size:
         out = frame.buffers[buffer]
-        np.copyto(out, found)
+        np.copyto(out, value)
         return out
-    return np.take(found, survivors, out=frame.buffers[buffer], mode="clip")
+    return np.take(value, survivors, out=frame.buffers[buffer], mode="clip")
 
 
-def _column(found: Any, n: int) -> Column:
-    if isinstance(found, Value):
-        return column_of(found, n)
-    known = isinstance(found, np.ndarray) and found.shape == (n,)
-    return Column(found if known else np.broadcast_to(found, (n,)))
+def _column(value: Any, n: int) -> Column:
+    if isinstance(value, Value):
+        return column_of(value, n)
+    known = isinstance(value, np.ndarray) and value.shape == (n,)
+    return Column(value if known else np.broadcast_to(value, (n,)))

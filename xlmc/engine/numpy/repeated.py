@@ -82,14 +82,14 @@ class RepeatedProgram:
             nonlocal chosen
             if trials is not chosen[0]:  # the same trials are asked for again and again
                 chosen = trials, read if trials is None else {name: column[trials] for name, column in read.items()}
-            found: list[list[Floats]] = []
+            result: list[list[Floats]] = []
             for start in range(0, at.size, block):
                 part = slice(start, min(start + block, at.size))
                 inputs = {name: column[part] for name, column in chosen[1].items()}
                 inputs[self.changing] = at[part]
                 columns = evaluator.filters(inputs, part.stop - part.start)
-                found.append([column.as_floats(copy=at.size > block) for column in columns])
-            return tuple(found)
+                result.append([column.as_floats(copy=at.size > block) for column in columns])
+            return tuple(result)
 
         return targets
 
@@ -100,15 +100,15 @@ class RepeatedProgram:
             return {name: known[name] for name in self.inputs}
         block = min(self.held.largest_block, max(n, 1))
         evaluator = self.held.evaluator(block)
-        found = [np.empty(n) for _ in self.names]
+        result = [np.empty(n) for _ in self.names]
         for start in range(0, n, block):
             part = slice(start, min(start + block, n))
             columns = evaluator.filters({name: column[part] for name, column in given.items()}, part.stop - part.start)
             if any(column.codes is not None for column in columns):
                 return None
-            for whole, column in zip(found, columns, strict=True):
+            for whole, column in zip(result, columns, strict=True):
                 whole[part] = column.values
-        known |= zip(self.names, found, strict=True)
+        known |= zip(self.names, result, strict=True)
         return {name: known[name] for name in self.inputs}
 
 
@@ -125,7 +125,7 @@ def _unreached(dag: Dag, targets: Sequence[int], computed: Sequence[int], changi
     for node in computed:
         if dag.nodes[node] == Input(changing) or not reached.isdisjoint(reads(dag, node)):
             reached.add(node)
-    found: set[int] = set()
+    result: set[int] = set()
     left, seen = [*targets], set[int]()
     while left:
         node = left.pop()
@@ -133,10 +133,10 @@ def _unreached(dag: Dag, targets: Sequence[int], computed: Sequence[int], changi
             continue
         seen.add(node)
         if node not in reached and dag.types[node] is Kind.NUMBER and dag.sizes[node] is None:
-            found.add(node)
+            result.add(node)
         else:
             left += reads(dag, node)
-    return sorted(found)
+    return sorted(result)
 
 
 def _inputs(dag: Dag, targets: Sequence[int], changing: str) -> tuple[str, ...]:

@@ -121,11 +121,11 @@ def find_indices(
         looked_up: the nodes that are picked from tables.
     """
     lookups = {node: lookup_of(dag, of) for node in nodes if type(of := dag.nodes[node]) is Apply}
-    found = {node for node, lookup in lookups.items() if type(lookup) is Search}.difference(keep)
-    for node in nodes if found else ():
+    result = {node for node, lookup in lookups.items() if type(lookup) is Search}.difference(keep)
+    for node in nodes if result else ():
         if node not in looked_up and type(lookups.get(node)) is not Pick:
-            found.difference_update(read[node])
-    return found
+            result.difference_update(read[node])
+    return result
 
 
 class Steps:
@@ -327,9 +327,9 @@ def _pair(angle: int, guard: Callable[..., bool] | None, nodes: tuple[int, int],
 def _drop_values(nodes: list[int]) -> Step:
     def step(frame: Frame) -> None:
         for node in nodes:
-            found, frame.values[node] = frame.values[node], None
-            if isinstance(found, Value):
-                frame.live -= found.nbytes
+            value, frame.values[node] = frame.values[node], None
+            if isinstance(value, Value):
+                frame.live -= value.nbytes
 
     return step
 

@@ -17,10 +17,10 @@ COSINE: Final = "COS"
 
 def sines_with_cosines(dag: Dag, nodes: Sequence[int]) -> dict[int, tuple[int, int]]:
     """Find the sines and cosines of angles of which both are wanted: node_id -> (sine, cosine)."""
-    found: dict[str, dict[int, int]] = {SINE: {}, COSINE: {}}
+    result: dict[str, dict[int, int]] = {SINE: {}, COSINE: {}}
     for node_id in nodes:
         node = dag.nodes[node_id]
-        if type(node) is Apply and node.function.name in found and dag.types[node.arguments[0]] is Kind.NUMBER:
-            found[node.function.name][node.arguments[0]] = node_id
-    both = [(found[SINE][angle], found[COSINE][angle]) for angle in found[SINE].keys() & found[COSINE].keys()]
+        if type(node) is Apply and node.function.name in result and dag.types[node.arguments[0]] is Kind.NUMBER:
+            result[node.function.name][node.arguments[0]] = node_id
+    both = [(result[SINE][angle], result[COSINE][angle]) for angle in result[SINE].keys() & result[COSINE].keys()]
     return {node_id: pair for pair in both for node_id in pair}

@@ -123,10 +123,10 @@ def _apply(dag: Dag, node_id: int, function: Function, arguments: tuple[int, ...
     readers = [_reader(dag, argument, _wanted_kind(dag, function, p)) for p, argument in enumerate(arguments)]
     if any(reader is None for reader in readers):
         return _careful_step(dag, node_id)
-    found = [reader for reader in readers if reader is not None]
+    result = [reader for reader in readers if reader is not None]
     if _fast_ufunc(dag, node) and function.ufunc is not None:
-        return _ufunc(function.ufunc, function.guard, node_id, found, buffer)
-    return _careful_step(dag, node_id) if function.takes_values else _body(function, node_id, found)
+        return _ufunc(function.ufunc, function.guard, node_id, result, buffer)
+    return _careful_step(dag, node_id) if function.takes_values else _body(function, node_id, result)
 
 
 def _on_numbers(dag: Dag, function: Function, arguments: tuple[int, ...]) -> bool:
@@ -157,14 +157,14 @@ Reader = Callable[[list[Any]], Any]
 
 def _reader(dag: Dag, node_id: int, kind: Kind) -> Reader | None:
     """How a step gets an argument as plain numbers or logicals; None if only the careful path can tell."""
-    node, found = dag.nodes[node_id], dag.types[node_id]
+    node, result = dag.nodes[node_id], dag.types[node_id]
     if isinstance(node, Constant):
         return _constant_reader(node.value, kind)
-    if found is kind and kind in (Kind.NUMBER, Kind.LOGICAL):
+    if result is kind and kind in (Kind.NUMBER, Kind.LOGICAL):
         return lambda values: values[node_id]
-    if found is Kind.LOGICAL and kind is Kind.NUMBER:
+    if result is Kind.LOGICAL and kind is Kind.NUMBER:
         return lambda values: values[node_id].astype(np.float64)
-    if found is Kind.NUMBER and kind is Kind.LOGICAL:
+    if result is Kind.NUMBER and kind is Kind.LOGICAL:
         return lambda values: values[node_id] != 0
     return None
 
@@ -262,13 +262,13 @@ def _counts(dag: Dag, cell: int, kind: Kind) -> bool:
 
     A text that varies has none either: it never counts, but it may be an error.
     """
-    found = dag.types[cell]
-    if found is kind:
+    result = dag.types[cell]
+    if result is kind:
         return True
     node = dag.nodes[cell]
     if isinstance(node, Constant) and int(node.value.kinds.flat[0]) in (BLANK, TEXT):
         return False
-    return not (kind is Kind.NUMBER and found is Kind.LOGICAL)
+    return not (kind is Kind.NUMBER and result is Kind.LOGICAL)
 
 
 def _fold(function: Function, node: int, operands: list[Reader], buffer: int | None) -> Step:
@@ -314,12 +314,12 @@ def _if_error(dag: Dag, node: int, value: int) -> Step:
     """
 
     def step(frame: Frame) -> None:
-        found = frame.values[value]
-        if isinstance(found, Value):
-            if found.has_errors:
+        result = frame.values[value]
+        if isinstance(result, Value):
+            if result.has_errors:
                 raise LeaveFastPath
-            found = _zeros_for_blanks(found)
-        frame.values[node] = found if dag.types[node] is dag.types[value] else as_value(found, dag.types[value])
+            result = _zeros_for_blanks(result)
+        frame.values[node] = result if dag.types[node] is dag.types[value] else as_value(result, dag.types[value])
 
     return step
 
@@ -357,10 +357,10 @@ def _plain_array(value: Value, kind: Kind) -> NDArray[Any]:
     return value.numbers != 0 if kind is Kind.LOGICAL else value.numbers
 
 
-def as_value(found: Any, kind: Kind) -> Value:
+def as_value(value: Any, kind: Kind) -> Value:
     """Turn a step's plain array or constant into a `Value`."""
-    if isinstance(found, Value):
-        return found
-    array = np.atleast_1d(np.asarray(found))
+    if isinstance(value, Value):
+        return value
+    array = np.atleast_1d(np.asarray(value))
     code = LOGICAL if kind is Kind.LOGICAL else NUMBER
     return Value(array.astype(np.float64, copy=False), np.full(1, code, np.uint8))

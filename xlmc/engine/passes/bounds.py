@@ -43,25 +43,25 @@ class NodeBounds:
 
     def _next(self) -> Bounds:
         """Bound the first node that has no bounds yet, from the bounds of the nodes before it."""
-        node_id, found = len(self._found), self._found
+        node_id, results = len(self._found), self._found
         match self._dag.nodes[node_id]:
             case Input(name):
                 return self._inputs.get(name, _ANY)
             case Select(_, yes, no):
-                return _around((*found[yes], *found[no]))
+                return _around((*results[yes], *results[no]))
             case Apply(function, (first, second)) if function.name in ("+", "-", "*", "/"):
-                return _combine(function.name, found[first], found[second])
+                return _combine(function.name, results[first], results[second])
             case Apply(function, (result, _)) if function.name == SNAP_TO_ZERO.name:
-                return found[result]
+                return results[result]
             case Apply(function, (cells, _)) if function.name == CELL_AT.name:
-                return found[cells]
+                return results[cells]
             case Apply(function, arguments) if function.name in _OF_SETS:
-                lows, highs = zip(*(found[argument] for argument in arguments), strict=True)
+                lows, highs = zip(*(results[argument] for argument in arguments), strict=True)
                 return _OF_SETS[function.name](lows), _OF_SETS[function.name](highs)
             case Apply(function) if function.facts.result_range is not None:
                 return function.facts.result_range
             case Apply(function, (only,)) if function.name in _OF_ONE:
-                return _OF_ONE[function.name](*found[only])
+                return _OF_ONE[function.name](*results[only])
         return _of_constant(self._dag, node_id) or _ANY
 
 

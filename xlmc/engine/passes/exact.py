@@ -44,13 +44,13 @@ class Exact:
 
     def trial(self, draws: Mapping[str, float]) -> dict[int, Item]:
         """Every node's value."""
-        found: dict[int, Item] = {}
+        result: dict[int, Item] = {}
         with mp.workdps(DIGITS):
             for node in self._nodes:
-                found[node] = self._value(node, draws, found)
-        return found
+                result[node] = self._value(node, draws, result)
+        return result
 
-    def _value(self, node_id: int, draws: Mapping[str, float], found: Mapping[int, Item]) -> Item:
+    def _value(self, node_id: int, draws: Mapping[str, float], results: Mapping[int, Item]) -> Item:
         node = formula_of(self._dag, node_id)
         match node:
             case Input(name):
@@ -58,15 +58,15 @@ class Exact:
             case Constant(value):
                 return _constant_items(value)
             case Range(rows):
-                return [[_single(found[part]) for part in row] for row in rows]
+                return [[_single(results[part]) for part in row] for row in rows]
             case Select(condition, yes, no):
-                return _choose(found[condition], found[yes], found[no])
+                return _choose(results[condition], results[yes], results[no])
             case IfErrorNode(value, instead, only_na):
-                item = found[value]
+                item = results[value]
                 lost = item is ErrorCode.NA if only_na else isinstance(item, ErrorCode)
-                return _zero_if_blank(found[instead] if lost else item)
+                return _zero_if_blank(results[instead] if lost else item)
             case Apply(function, arguments):
-                items = [found[argument] for argument in arguments]
+                items = [results[argument] for argument in arguments]
                 body = EXACT.get(function.name)
                 if body is not None:
                     result = _apply(body, items)
@@ -127,8 +127,8 @@ def _apply(body: Callable[..., Item], items: Sequence[Item]) -> Item:
         return ErrorCode.DIV0
     except (ValueError, OverflowError, mpmath.libmp.NoConvergence):
         return ErrorCode.NUM
-    except _FoundError as found:
-        return found.code
+    except _FoundError as error:
+        return error.code
 
 
 class _FoundError(Exception):
@@ -201,17 +201,17 @@ def _atan2(x: mpf, y: mpf) -> mpf:
 
 def _cells(items: Sequence[Item]) -> list[mpf]:
     """Return the numbers that count in a sum: those in ranges, and all that is given directly, as numbers."""
-    found: list[mpf] = []
+    result: list[mpf] = []
     for item in items:
         if not isinstance(item, list):
-            found.append(_number(item))
+            result.append(_number(item))
             continue
         for cell in (cell for row in item for cell in row):
             if isinstance(cell, ErrorCode):
                 raise _FoundError(cell)
             if isinstance(cell, mpf):
-                found.append(cell)
-    return found
+                result.append(cell)
+    return result
 
 
 def _of_cells(function: Callable[[list[mpf]], mpf]) -> Callable[..., Item]:
@@ -267,7 +267,7 @@ def _compare(relation: Callable[[mpf, mpf], bool]) -> Callable[..., Item]:
 
 def _join(decide: Callable[[list[bool]], bool]) -> Callable[..., Item]:
     def body(*items: Item) -> Item:
-        found: list[bool] = []
+        result: list[bool] = []
         for item in items:
             cells = [cell for row in item for cell in row] if isinstance(item, list) else [item]
             for cell in cells:
@@ -276,8 +276,8 @@ def _join(decide: Callable[[list[bool]], bool]) -> Callable[..., Item]:
                 if isinstance(cell, str):
                     return NotImplemented
                 if cell is not None:
-                    found.append(bool(cell))
-        return decide(found) if found else ErrorCode.VALUE
+                    result.append(bool(cell))
+        return decide(result) if result else ErrorCode.VALUE
 
     return body
 

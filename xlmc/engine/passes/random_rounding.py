@@ -196,11 +196,11 @@ def evaluate(
         else:
             assert isinstance(node, Apply | Select | IfErrorNode | Range)
             known = {part: typed[part] for part in _measured_arguments(node) if part in typed} if typed else {}
-            found = evaluate_node(
+            result = evaluate_node(
                 node, {part: known.get(part, values[part]) for part in uses(node)} if known else values
             )
-            moves = isinstance(node, Apply) and _rounds(node) and not isinstance(found, Ragged)
-            values[node_id] = rounding.move(found, n) if rounding is not None and moves else found
+            moves = isinstance(node, Apply) and _rounds(node) and not isinstance(result, Ragged)
+            values[node_id] = rounding.move(result, n) if rounding is not None and moves else result
         if last:
             for part in {*uses(node)} - wanted:
                 if last[part] == node_id:
@@ -219,26 +219,26 @@ def evaluate_changes(
         values: of all of them, as they are.
         given: node -> another value of it.
     """
-    found = dict(given)
+    result = dict(given)
     for node_id in nodes:
         node = formula_of(dag, node_id)
-        if node_id in given or isinstance(node, Input | Constant) or not any(part in found for part in uses(node)):
+        if node_id in given or isinstance(node, Input | Constant) or not any(part in result for part in uses(node)):
             continue
         if isinstance(node, Apply) and node.function.name == SNAP_TO_ZERO.name:
-            found[node_id] = found.get(node.arguments[0], values[node.arguments[0]])
+            result[node_id] = result.get(node.arguments[0], values[node.arguments[0]])
         else:
-            found[node_id] = evaluate_node(node, {part: found.get(part, values[part]) for part in uses(node)})
-    return found
+            result[node_id] = evaluate_node(node, {part: result.get(part, values[part]) for part in uses(node)})
+    return result
 
 
 def _find_typed(dag: Graph, nodes: Sequence[int]) -> set[int]:
     """Typed numbers that are calculated with, but not π or small whole numbers, which are no measurements."""
-    found: set[int] = set()
+    result: set[int] = set()
     for node in nodes:
-        found.update(
+        result.update(
             part for part in _measured_arguments(formula_of(dag, node)) if isinstance(formula_of(dag, part), Constant)
         )
-    return {node for node in found if not _is_exact(dag.nodes[node])}
+    return {node for node in result if not _is_exact(dag.nodes[node])}
 
 
 def _measured_arguments(node: Node) -> tuple[int, ...]:
@@ -264,16 +264,16 @@ def term_sizes(dag: Graph, nodes: Sequence[int], values: Mapping[int, Value]) ->
 
     What is smaller than that by many digits, and should be 0, is dust.
     """
-    found: dict[int, float] = {}
+    result: dict[int, float] = {}
     for node_id in nodes:
         node = formula_of(dag, node_id)
         parts = uses(node)
-        size = max((found[part] for part in parts), default=0.0)
+        size = max((result[part] for part in parts), default=0.0)
         if isinstance(node, Apply) and node.function.facts.adds:
             sizes = [float(np.abs(values[part].numbers).max(initial=0.0)) for part in parts]
             size = max([size, *(one for one in sizes if np.isfinite(one))])
-        found[node_id] = size
-    return found
+        result[node_id] = size
+    return result
 
 
 def _rounds(node: Apply) -> bool:
@@ -286,6 +286,6 @@ def numbers_of(value: Value, n: int) -> Floats:
     """
     if not value.numbers.size:
         return np.full(n, np.nan)
-    found = np.where(value.kinds <= LOGICAL, value.numbers, np.nan)
-    found = np.where(value.kinds >= ERROR, np.nan, found)
-    return np.broadcast_to(found.reshape(found.shape[0], -1)[:, 0], (n,))
+    values = np.where(value.kinds <= LOGICAL, value.numbers, np.nan)
+    values = np.where(value.kinds >= ERROR, np.nan, values)
+    return np.broadcast_to(values.reshape(values.shape[0], -1)[:, 0], (n,))

@@ -75,15 +75,15 @@ class _FormulasEvaluator:
         for cell, name in program.inputs.items():
             values[cell] = ErrorCode.NUM if np.isnan(inputs[name][i]) else float(inputs[name][i])
         for cell, compiled in program.cells:
-            found = compiled(values, program.content)
-            values[cell] = 0.0 if found is None else found
+            value = compiled(values, program.content)
+            values[cell] = 0.0 if value is None else value
         return values
 
     def _column(self, target: _Compiled, trials: Sequence[int] | NDArray[np.intp]) -> Column:
-        found = np.empty(len(trials), object)
+        values = np.empty(len(trials), object)
         for position, i in enumerate(trials):
-            found[position] = target(self._trials[i], self._program.content)
-        return column_of(from_objects(found), len(trials))
+            values[position] = target(self._trials[i], self._program.content)
+        return column_of(from_objects(values), len(trials))
 
 
 class _Compiled:

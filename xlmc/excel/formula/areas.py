@@ -191,10 +191,10 @@ def linked_sheet(workbook: Workbook, book: str, name: str | None, host: Cell) ->
     """
     linked = workbook.links[book]
     sheets = {title.casefold(): title for title in linked.sheets}
-    found = sheets.get((host.sheet if name is None else f"{book}{name}").casefold())
-    if found is None:
+    text = sheets.get((host.sheet if name is None else f"{book}{name}").casefold())
+    if text is None:
         raise FormulaError(f"the formula refers to {_name_of(linked)}, of which no values are stored", hint=COPY)
-    return found
+    return text
 
 
 def linked_name(workbook: Workbook, book: str, name: ir.Name) -> DefinedName:
@@ -207,10 +207,10 @@ def linked_name(workbook: Workbook, book: str, name: ir.Name) -> DefinedName:
     named = {(n.sheet and n.sheet.casefold()): n for n in linked.names if n.name.casefold() == name.name.casefold()}
     scope = None if name.sheet is None else f"{book}{name.sheet}".casefold()
     only = next(iter(named.values())) if len(named) == 1 and scope is None else None
-    found = named.get(scope) or named.get(None) or only
-    if found is None:
+    defined_name = named.get(scope) or named.get(None) or only
+    if defined_name is None:
         raise FormulaError(f"the formula refers to {name.name!r} of {_name_of(linked)}, which is not stored", hint=COPY)
-    return found
+    return defined_name
 
 
 def _name_of(linked: LinkedBook) -> str:

@@ -21,8 +21,8 @@ _Bound = Mapping[str, ir.Expression]
 
 def function_named_by(name: str) -> str | None:
     """Return the function that a file gives as a value: `_xleta.SUM` is SUM; None of any other name."""
-    found = _FUNCTION.fullmatch(name)
-    return None if found is None else found["name"].upper()
+    match = _FUNCTION.fullmatch(name)
+    return None if match is None else match["name"].upper()
 
 
 def stands_for_function(workbook: Workbook, name: str, sheet: str | None) -> bool:
@@ -72,21 +72,21 @@ def _last(tree: ir.Expression, bound: _Bound, depth: int) -> ir.Lambda | ir.Func
             given = dict(zip(called.parameters, arguments, strict=False))
             return _last(called.body, {**bound, **given}, depth + 1)
         case ir.Call(name, arguments) if name in _CHOOSING:
-            return next((found for part in arguments[1:] if (found := _last(part, bound, depth + 1))), None)
+            return next((result for part in arguments[1:] if (result := _last(part, bound, depth + 1))), None)
         case _:
             return None
 
 
 def _defined(workbook: Workbook, name: str, sheet: str | None, seen: frozenset[str]) -> ir.Expression | None:
     """Return the LAMBDA, as written, that a defined name stands for."""
-    found = workbook.defined_name(name, sheet)
-    if found is None or name.casefold() in seen:
+    defined_name = workbook.defined_name(name, sheet)
+    if defined_name is None or name.casefold() in seen:
         return None
     try:
-        tree = parse(found.text)
+        tree = parse(defined_name.text)
     except FormulaError:
         return None
-    seen_as = sheet if found.sheet is not None else None
+    seen_as = sheet if defined_name.sheet is not None else None
     return _written(workbook, tree, seen_as, {}, seen | {name.casefold()})
 
 
@@ -105,7 +105,7 @@ def _written(
             names = [part.name.casefold() for part in arguments[:-1:2] if isinstance(part, ir.Name)]
             return of(arguments[-1], {**bound, **dict(zip(names, arguments[1::2], strict=False))})
         case ir.Call(name, arguments) if name in _CHOOSING:
-            return next((found for part in arguments[1:] if (found := of(part))), None)
+            return next((expression for part in arguments[1:] if (expression := of(part))), None)
         case ir.Call(name) if not _is_excels_own(name):
             return _result(of(ir.Name(name)), of)
         case ir.Invoke(function):

@@ -130,10 +130,10 @@ def absolute_reference(text: str) -> ir.Reference | None:
 
     None for any other text, and for a reference that is not on a sheet.
     """
-    found = _Reference._re.fullmatch(text) if "$" in text else None
-    if found is None or "$" not in found["name"]:
+    match = _Reference._re.fullmatch(text) if "$" in text else None
+    if match is None or "$" not in match["name"]:
         return None
-    groups = {key: value for key, value in found.groupdict().items() if value is not None}
+    groups = {key: value for key, value in match.groupdict().items() if value is not None}
     first, _, last = groups["name"].partition(":")
     corners = corner(first), corner(last) if last else None
     if all(end is None or is_on_the_sheet(end) for end in corners):

@@ -46,8 +46,8 @@ class _Trees(Mapping[Cell, ir.Expression]):
         self.ordered = ordered
 
     def __getitem__(self, cell: Cell) -> ir.Expression:
-        found = self.ordered[cell]
-        return found.stencil.at(cell) if isinstance(found, Filled) else found
+        expression = self.ordered[cell]
+        return expression.stencil.at(cell) if isinstance(expression, Filled) else expression
 
     def __iter__(self) -> Iterator[Cell]:
         return iter(self.ordered)
@@ -163,9 +163,9 @@ class _Walk:
     def _enter(self, cell: Cell) -> None:
         if cell in self._given:
             self.reached.add(cell)
-        elif cell not in self.ordered and (found := self._rewritten(cell) or self._read(cell)) is not None:
-            self._open[cell] = found
-            self.needs.parts[cell] = parts = self._precedents(cell, found)
+        elif cell not in self.ordered and (expression := self._rewritten(cell) or self._read(cell)) is not None:
+            self._open[cell] = expression
+            self.needs.parts[cell] = parts = self._precedents(cell, expression)
             self._trail[cell] = self._waiting(parts)
 
     def _waiting(self, parts: tuple[Part, ...]) -> Iterator[Cell]:
@@ -180,22 +180,24 @@ class _Walk:
         if formula is None:
             return self._spills.anchor(cell)
         try:
-            found = self._resolver.tree_or_stencil(cell, formula)
-            return Filled(found, found.cells(cell)) if isinstance(found, Stencil) else found
+            expression = self._resolver.tree_or_stencil(cell, formula)
+            return Filled(expression, expression.cells(cell)) if isinstance(expression, Stencil) else expression
         except FormulaError as error:
             if self._strict:
                 raise
             self.faults[cell] = error
             return ir.Missing()
 
-    def _precedents(self, cell: Cell, found: ir.Expression | Filled) -> tuple[Part, ...]:
+    def _precedents(self, cell: Cell, expression: ir.Expression | Filled) -> tuple[Part, ...]:
         """Return the cells that one needs and that hold a formula or are given."""
         parts: list[Part]
-        if isinstance(found, Filled):
+        if isinstance(expression, Filled):
             known = self._computed
-            parts = [tuple([need for need in found.cells if (known[need] if need in known else self._counts(need))])]
+            parts = [
+                tuple([need for need in expression.cells if (known[need] if need in known else self._counts(need))])
+            ]
         else:
-            reads = dict.fromkeys(references(found))
+            reads = dict.fromkeys(references(expression))
             parts = [part for read in reads if isinstance(read, Area) for part in self._strips.of(read)]
             parts.append(tuple([read for read in reads if isinstance(read, Cell) and self._counts(read)]))
         if cell in self._more:
@@ -204,12 +206,12 @@ class _Walk:
 
     def _rewritten(self, cell: Cell) -> ir.Expression | None:
         """Return what replaces a cell's own formula, if anything does."""
-        found = self._resolver.rewritten.get(cell)
-        if not isinstance(found, FormulaError):
-            return found
+        expression = self._resolver.rewritten.get(cell)
+        if not isinstance(expression, FormulaError):
+            return expression
         if self._strict:
-            raise found
-        self.faults[cell] = found
+            raise expression
+        self.faults[cell] = expression
         return ir.Missing()
 
     def _counts(self, cell: Cell) -> bool:
@@ -279,14 +281,14 @@ def downstream(needs: Needs, inputs: Iterable[Cell]) -> frozenset[Cell]:
     for cell, numbers in links.items():
         for number in numbers:
             cells[number].append(cell)
-    found, open_ = set(inputs), list(inputs)
+    result, open_ = set(inputs), list(inputs)
     while open_:
         for number in users.pop(open_.pop(), ()):
-            new = [cell for cell in cells[number] if cell not in found]
+            new = [cell for cell in cells[number] if cell not in result]
             cells[number] = []
-            found.update(new)
+            result.update(new)
             open_ += new
-    return frozenset(found)
+    return frozenset(result)
 
 
 def circular(needs: Needs) -> dict[Cell, FormulaError]:
@@ -297,13 +299,13 @@ def circular(needs: Needs) -> dict[Cell, FormulaError]:
     """
     cells = list(needs)
     groups = _groups(needs)
-    found: dict[Cell, FormulaError] = {}
+    result: dict[Cell, FormulaError] = {}
     for cell in cells:
         alone = len(groups[cell]) == 1 and not needs.names(cell, cell)
-        if cell not in found and not alone and (loop := _loop(cell, needs, groups)):
+        if cell not in result and not alone and (loop := _loop(cell, needs, groups)):
             fault = circle_error(loop)
-            found |= dict.fromkeys(groups[cell], fault)
-    return found
+            result |= dict.fromkeys(groups[cell], fault)
+    return result
 
 
 def circle_error(cells: Sequence[Cell]) -> FormulaError:

@@ -21,8 +21,8 @@ _PADDED: Final = re.compile(r"(?P<before>\$?(?P<column>[A-Za-z]{1,3})\$?)0+(?=[1
 _CELLS: Final = re.compile(r"\$?[A-Za-z]{1,3}\$?[0-9]+(?::\$?[A-Za-z]{1,3}\$?[0-9]+)?")
 
 
-def _unpad(found: re.Match[str]) -> str:
-    return found["before"] if column_number(found["column"].upper()) <= MAX_COLUMN else found[0]
+def _unpad(match: re.Match[str]) -> str:
+    return match["before"] if column_number(match["column"].upper()) <= MAX_COLUMN else match[0]
 
 
 def read_a1(text: str) -> ir.Expression | None:
@@ -54,11 +54,11 @@ def _go_together(first: ir.Corner, last: ir.Corner) -> bool:
 
 
 def _r1c1_corner(text: str, host: Cell) -> ir.Corner | None:
-    found = _R1C1.fullmatch(text)
-    if found is None or not text:
+    match = _R1C1.fullmatch(text)
+    if match is None or not text:
         return None
-    row = _step(found["r"], host.row) if found["row"] else None
-    column = _step(found["c"], host.column) if found["column"] else None
+    row = _step(match["r"], host.row) if match["row"] else None
+    column = _step(match["c"], host.column) if match["column"] else None
     return ir.Corner(row, column, True, True)
 
 

@@ -30,11 +30,11 @@ def items_named(field: PivotField, asked: CellValue) -> Sequence[int]:
 @lru_cache(maxsize=1024)
 def _items_by_name(field: PivotField) -> Mapping[object, Sequence[int]]:
     """Return what an item may be called -> the items that are."""
-    found: dict[object, list[int]] = {}
+    result: dict[object, list[int]] = {}
     for item in range(len(field.items)):
         for name in names_of(field, item):
-            found.setdefault(_key(name.value), []).append(item)
-    return found
+            result.setdefault(_key(name.value), []).append(item)
+    return result
 
 
 def _key(name: CellValue) -> object:

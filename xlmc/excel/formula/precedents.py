@@ -101,14 +101,14 @@ def mentioned_cells(workbook: Workbook, cell: Cell, among: Collection[Cell]) -> 
 
 def _in_text(text: str, host: Cell, shift: tuple[int, int], workbook: Workbook, open_names: set[str]) -> Iterator[Area]:
     text = _TEXTS.sub('""', text)
-    for found in _PLACE.finditer(text):
-        sheet = _sheet(found, host, workbook)
+    for match in _PLACE.finditer(text):
+        sheet = _sheet(match, host, workbook)
         if sheet is not None:
-            yield _area(sheet, found.groups()[2:], shift)
-    for found in _COLUMNS.finditer(text):
-        sheet = _sheet(found, host, workbook)
+            yield _area(sheet, match.groups()[2:], shift)
+    for match in _COLUMNS.finditer(text):
+        sheet = _sheet(match, host, workbook)
         if sheet is not None:
-            left, right = sorted(min(column_number(letters.upper()), MAX_COLUMN) for letters in found.groups()[2:])
+            left, right = sorted(min(column_number(letters.upper()), MAX_COLUMN) for letters in match.groups()[2:])
             yield Area(sheet, 1, left, MAX_ROW, right)
     for word in dict.fromkeys(_WORD.findall(text)):
         table = workbook.table_named(word)
@@ -123,8 +123,8 @@ def _in_text(text: str, host: Cell, shift: tuple[int, int], workbook: Workbook, 
                 yield from _in_text(name.text, host, own, workbook, open_names | {word.casefold()})
 
 
-def _sheet(found: re.Match[str], host: Cell, workbook: Workbook) -> str | None:
-    name = found["bare"] if found["quoted"] is None else found["quoted"].replace("''", "'")
+def _sheet(match: re.Match[str], host: Cell, workbook: Workbook) -> str | None:
+    name = match["bare"] if match["quoted"] is None else match["quoted"].replace("''", "'")
     if name is None:
         return host.sheet
     sheet = workbook.sheet_named(name)

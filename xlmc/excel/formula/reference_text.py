@@ -55,12 +55,12 @@ def prefix(groups: dict[str, str]) -> tuple[str | None, str | None, str | None]:
 
 def corner(text: str) -> ir.Corner:
     """Return the cell `$A$1`, column `A` or row `1` of a matched `REFERENCE`, as one of its ends."""
-    found = _CORNER.fullmatch(text)
-    assert found is not None  # `REFERENCE` matches nothing else
-    row, column = found["r"], found["c"]
+    match = _CORNER.fullmatch(text)
+    assert match is not None  # `REFERENCE` matches nothing else
+    row, column = match["r"], match["c"]
     if column is None:  # a whole row, `$3`: the `$` was read as the column's
-        return ir.Corner(int(row), None, bool(found["cf"] or found["rf"]), False)
-    return ir.Corner(int(row) if row else None, column_number(column), bool(found["rf"]), bool(found["cf"]))
+        return ir.Corner(int(row), None, bool(match["cf"] or match["rf"]), False)
+    return ir.Corner(int(row) if row else None, column_number(column), bool(match["rf"]), bool(match["cf"]))
 
 
 def is_on_the_sheet(end: ir.Corner) -> bool:
@@ -90,10 +90,10 @@ def _pieces(body: str) -> list[str]:
     """`[#Headers],[a]:[b]` as its names and signs; a body without inner brackets is one name."""
     if "[" not in re.sub("'.", "", body):
         return [body.strip()] if body.strip() else []
-    found = list(_PIECE.finditer(body))
-    if "".join(piece[0] for piece in found) != body or any(piece["name"] == "" for piece in found):
+    result = list(_PIECE.finditer(body))
+    if "".join(piece[0] for piece in result) != body or any(piece["name"] == "" for piece in result):
         raise ValueError(f"{body!r} is not allowed in a table's brackets")
-    return [piece["name"] or piece["sign"] for piece in found]
+    return [piece["name"] or piece["sign"] for piece in result]
 
 
 def _unescaped(name: str) -> str:

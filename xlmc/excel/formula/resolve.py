@@ -86,8 +86,8 @@ class Resolver:
         Raises:
             FormulaError: names the cell; the formula cannot be read, or names something that is not there.
         """
-        found = self.tree_or_stencil(cell, formula)
-        return found.at(cell) if isinstance(found, Stencil) else found
+        expression = self.tree_or_stencil(cell, formula)
+        return expression.at(cell) if isinstance(expression, Stencil) else expression
 
     def tree_or_stencil(self, cell: Cell, formula: Formula) -> ir.Expression | Stencil:
         """Resolve a cell's formula; if it was filled into many cells, return the stencil that these have in common.
@@ -219,8 +219,8 @@ class Resolver:
         sheet = self._sheet(tree.sheet, host) if book is None else linked_sheet(self.workbook, book, tree.sheet, host)
         if book is not None and sheet in self.workbook.links[book].broken:
             return ir.ErrorLiteral(ErrorCode.REF)
-        found = seen_from(tree, sheet, host, origin, wraps=bool(self._open_names))
-        return self._cut(found) if isinstance(found, Area) else found
+        expression = seen_from(tree, sheet, host, origin, wraps=bool(self._open_names))
+        return self._cut(expression) if isinstance(expression, Area) else expression
 
     def _over_sheets(self, tree: ir.Reference, host: Cell, origin: tuple[int, int]) -> ir.Expression:
         """`Jan:Dec!A1` as the areas of each sheet between the two tabs, joined."""
@@ -237,24 +237,24 @@ class Resolver:
 
     def _linked_name(self, book: str, name: ir.Name) -> ir.Expression:
         """Resolve a name of another workbook, by what it stood for when Excel last read that."""
-        found = linked_name(self.workbook, book, name)
+        defined_name = linked_name(self.workbook, book, name)
         if self._linked is not None:
             raise FormulaError(
                 f"the formula refers to {name.name!r} of another workbook, which stands for another name", hint=COPY
             )
         variables, self._variables, self._linked = self._variables, frozenset(), book
         try:
-            return self._resolve(parse(found.text), Cell(found.sheet or book, 1, 1), (1, 1))
+            return self._resolve(parse(defined_name.text), Cell(defined_name.sheet or book, 1, 1), (1, 1))
         finally:
             self._variables, self._linked = variables, None
 
     def _sheet(self, name: str | None, host: Cell) -> str:
         if name is None:
             return host.sheet
-        found = self.workbook.sheet_named(name)
-        if found is None:
+        sheet = self.workbook.sheet_named(name)
+        if sheet is None:
             raise FormulaError(f"there is no sheet {name!r}", hint=_did_you_mean(name, self.workbook.sheets))
-        return found.name
+        return sheet.name
 
     def to_the_last_cell(self, area: Area) -> Area:
         """End the area with the cells that are filled where it goes on far beyond them; the rest is counted."""
@@ -275,8 +275,8 @@ class Resolver:
         """Last row and column that hold anything: a whole column ends there."""
         if sheet not in self._used:
             cells = [(cell.row, cell.column) for cell in self.inputs if cell.sheet == sheet]
-            found = self.workbook.sheet_of(Cell(sheet, 1, 1))
-            cells += () if found is None else found.cells
+            result = self.workbook.sheet_of(Cell(sheet, 1, 1))
+            cells += () if result is None else result.cells
             self._used[sheet] = (max((r for r, _ in cells), default=1), max((c for _, c in cells), default=1))
         return self._used[sheet]
 
@@ -290,20 +290,20 @@ class Resolver:
         if book is not None:
             return self._linked_name(book, tree)
         scope = host.sheet if tree.sheet is None else self._sheet(tree.sheet, host)
-        found = self.workbook.defined_name(tree.name, self._seen_by(host) if tree.sheet is None else scope)
-        if found is None and (not self._strict or self._is_saved_as_unknown(host)):
+        defined_name = self.workbook.defined_name(tree.name, self._seen_by(host) if tree.sheet is None else scope)
+        if defined_name is None and (not self._strict or self._is_saved_as_unknown(host)):
             return ir.ErrorLiteral(ErrorCode.NAME, tree.name)
-        if found is None:
+        if defined_name is None:
             known = (name.name for name in self.workbook.names)
             raise FormulaError(f"there is no name {tree.name!r}", hint=_did_you_mean(tree.name, known))
-        key = f"={found.sheet}!{found.name}={scope}".casefold()
+        key = f"={defined_name.sheet}!{defined_name.name}={scope}".casefold()
         if key in self._open_names:
-            return self._again(found.name, key, scope)
+            return self._again(defined_name.name, key, scope)
         self._open_names.append(key)
         outer, self._variables = self._variables, frozenset()
-        around, self._in_global = self._in_global, found.sheet is None
+        around, self._in_global = self._in_global, defined_name.sheet is None
         try:  # a name's relative references are written as seen from A1
-            resolved = self._resolve(parse(found.text), Cell(scope, host.row, host.column), (1, 1))
+            resolved = self._resolve(parse(defined_name.text), Cell(scope, host.row, host.column), (1, 1))
         finally:
             self._open_names.pop()
             self._variables, self._in_global = outer, around
@@ -349,11 +349,11 @@ class Resolver:
                     "a table's column is named without its table, outside any table", hint="write the table before it"
                 )
             return around[0]
-        found = self.workbook.table_named(name)
-        if found is None:
+        result = self.workbook.table_named(name)
+        if result is None:
             known = (table.name for table in self.workbook.tables)
             raise FormulaError(f"there is no table {name!r}", hint=_did_you_mean(name, known))
-        return found
+        return result
 
 
 def _variable(name: ir.Expression, of: str) -> str:
@@ -368,8 +368,8 @@ def _parameter(name: ir.Expression) -> tuple[str, bool]:
     """
     if isinstance(name, ir.TableReference) and name.first and name == ir.TableReference(None, (), name.first):
         return name.first.casefold(), True
-    found = _variable(name, "LAMBDA")
-    return found, found.startswith(_OPTIONAL)
+    text = _variable(name, "LAMBDA")
+    return text, text.startswith(_OPTIONAL)
 
 
 def _forms(parameter: str) -> tuple[str, ...]:

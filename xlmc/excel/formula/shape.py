@@ -37,22 +37,22 @@ def shape_of(text: str, row: int, column: int) -> str:
     True
     """
 
-    def relative(found: re.Match[str]) -> str:
-        column_fixed, letters, row_fixed, digits = found.group("cf", "c", "rf", "r")
+    def relative(match: re.Match[str]) -> str:
+        column_fixed, letters, row_fixed, digits = match.group("cf", "c", "rf", "r")
         if digits is not None:
             down, right = int(digits), column_number(letters)
             if right > MAX_COLUMN or down > MAX_ROW:
-                return found[0]  # no cell: a name that ends in digits
+                return match[0]  # no cell: a name that ends in digits
             return f"\1{_step(row_fixed, down, row)},{_step(column_fixed, right, column)}\1"
-        if found["c1"] is not None:
-            ends = ["$" if end[0] == "$" else "" for end in (found["c1"], found["c2"])]
-            numbers = [column_number(end.lstrip("$")) for end in (found["c1"], found["c2"])]
+        if match["c1"] is not None:
+            ends = ["$" if end[0] == "$" else "" for end in (match["c1"], match["c2"])]
+            numbers = [column_number(end.lstrip("$")) for end in (match["c1"], match["c2"])]
             return "\2" + ":".join(str(_step(f, p, column)) for f, p in zip(ends, numbers, strict=True)) + "\2"
-        if found["r1"] is not None:
-            ends = [end[:1].strip("0123456789") for end in (found["r1"], found["r2"])]
-            numbers = [int(end.lstrip("$")) for end in (found["r1"], found["r2"])]
+        if match["r1"] is not None:
+            ends = [end[:1].strip("0123456789") for end in (match["r1"], match["r2"])]
+            numbers = [int(end.lstrip("$")) for end in (match["r1"], match["r2"])]
             return "\3" + ":".join(str(_step(f, p, row)) for f, p in zip(ends, numbers, strict=True)) + "\3"
-        return found[0]
+        return match[0]
 
     return _TOKEN.sub(relative, text)
 
@@ -68,21 +68,21 @@ def text_at(text: str, down: int, right: int) -> str:
     'B3*$B$2+SUM(D:D)'
     """
 
-    def moved(found: re.Match[str]) -> str:
-        column_fixed, letters, row_fixed, digits = found.group("cf", "c", "rf", "r")
+    def moved(match: re.Match[str]) -> str:
+        column_fixed, letters, row_fixed, digits = match.group("cf", "c", "rf", "r")
         if digits is not None:
             if column_number(letters) > MAX_COLUMN or int(digits) > MAX_ROW:
-                return found[0]
+                return match[0]
             return f"{_column_at(column_fixed, letters, right)}{_row_at(row_fixed, digits, down)}"
-        if found["c1"] is not None:
+        if match["c1"] is not None:
             return ":".join(
-                _column_at(end[: -len(end.lstrip("$"))], end.lstrip("$"), right) for end in found.group("c1", "c2")
+                _column_at(end[: -len(end.lstrip("$"))], end.lstrip("$"), right) for end in match.group("c1", "c2")
             )
-        if found["r1"] is not None:
+        if match["r1"] is not None:
             return ":".join(
-                _row_at(end[: -len(end.lstrip("$"))], end.lstrip("$"), down) for end in found.group("r1", "r2")
+                _row_at(end[: -len(end.lstrip("$"))], end.lstrip("$"), down) for end in match.group("r1", "r2")
             )
-        return found[0]
+        return match[0]
 
     return _TOKEN.sub(moved, text) if down or right else text
 
@@ -116,15 +116,15 @@ class _Filling(NamedTuple):
 def _filling(text: str, row: int) -> _Filling | None:
     """None if the text refers to whole rows."""
     pieces, steps, end = [], [], 0
-    for found in _TOKEN.finditer(text):
-        if found["r1"] is not None:
+    for match in _TOKEN.finditer(text):
+        if match["r1"] is not None:
             return None
-        if found["r"] is not None and not found["rf"] and column_number(found["c"]) <= MAX_COLUMN:
-            if int(found["r"]) > MAX_ROW:
+        if match["r"] is not None and not match["rf"] and column_number(match["c"]) <= MAX_COLUMN:
+            if int(match["r"]) > MAX_ROW:
                 continue
-            start, stop = found.span("r")
+            start, stop = match.span("r")
             pieces.append(text[end:start].replace("%", "%%") + "%d")
-            steps.append(int(found["r"]) - row)
+            steps.append(int(match["r"]) - row)
             end = stop
     pieces.append(text[end:].replace("%", "%%"))
     return _Filling("".join(pieces), tuple(steps), 1 - min(steps, default=0), MAX_ROW - max(steps, default=0))
@@ -160,10 +160,10 @@ class Shapes:
             FormulaError: the text is not a formula.
         """
         written = text, row, column  # the cells of a shared formula have these in common
-        found = self._texts.get(written)
-        if found is None:
-            self._texts[written] = found = self._filled(text, row, column) or self._shape(text, row, column)
-        return found
+        shape = self._texts.get(written)
+        if shape is None:
+            self._texts[written] = shape = self._filled(text, row, column) or self._shape(text, row, column)
+        return shape
 
     def _filled(self, text: str, row: int, column: int) -> _Shape | None:
         """Return the shape of the formula met last in the column, if filling that down gives this one."""
@@ -174,13 +174,13 @@ class Shapes:
 
     def _shape(self, text: str, row: int, column: int) -> _Shape:
         key = shape_of(text, row, column)
-        found = self._known.get(key)
-        if found is None:
-            self._known[key] = found = _Shape(parse_cell(text), (row, column))
+        shape = self._known.get(key)
+        if shape is None:
+            self._known[key] = shape = _Shape(parse_cell(text), (row, column))
         filling = _filling(text, row)
         if filling is not None:
-            self._columns[column] = filling, found
-        return found
+            self._columns[column] = filling, shape
+        return shape
 
 
 _REFERENCE: Final = r"(?:'(?:[^']|'')*'!)?[\w.$!:]+"
@@ -210,11 +210,11 @@ def shown_formula(formula: Formula, cell: Cell) -> str:
     return f"={_HIDDEN.sub(_shown, text)}"
 
 
-def _shown(found: re.Match[str]) -> str:
-    if found["parameters"] is not None:
-        return "LAMBDA(" + _NEEDED.sub("", _OPTIONAL.sub(r"[\1]", found["parameters"]))
-    if found["spilled"] is not None:
-        return f"{_NEEDED.sub('', found['spilled'])}#"
-    if found["single"] is not None:
-        return f"@{_NEEDED.sub('', found['single'])}"
-    return "" if found["prefix"] is not None else found[0]
+def _shown(match: re.Match[str]) -> str:
+    if match["parameters"] is not None:
+        return "LAMBDA(" + _NEEDED.sub("", _OPTIONAL.sub(r"[\1]", match["parameters"]))
+    if match["spilled"] is not None:
+        return f"{_NEEDED.sub('', match['spilled'])}#"
+    if match["single"] is not None:
+        return f"@{_NEEDED.sub('', match['single'])}"
+    return "" if match["prefix"] is not None else match[0]

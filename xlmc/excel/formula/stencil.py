@@ -141,13 +141,13 @@ def _leaves(tree: ir.Expression) -> list[_Leaf] | None:
 
 
 def _join(parts: list[ir.Expression] | tuple[ir.Expression, ...]) -> list[_Leaf] | None:
-    found: list[_Leaf] = []
+    result: list[_Leaf] = []
     for part in parts:
         leaves = _leaves(part)
         if leaves is None:
             return None
-        found += leaves
-    return found
+        result += leaves
+    return result
 
 
 def _steps(reference: _Leaf) -> tuple[int, int] | None:

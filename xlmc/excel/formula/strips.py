@@ -89,9 +89,9 @@ class Stretch:
         """Whether any is among the cells that vary, once this is known of all of them."""
         cells, constant = self.strip.cells, self.strip.constant
         for indices in constant.outside(self.start, self.stop):
-            found = next((index for index in indices if cells[index] in varying), None)
-            constant.add(indices.start, indices.stop if found is None else found)
-            if found is not None:
+            value = next((index for index in indices if cells[index] in varying), None)
+            constant.add(indices.start, indices.stop if value is None else value)
+            if value is not None:
                 return True
         return False
 
@@ -180,14 +180,14 @@ class Needs(Mapping[Cell, tuple[Cell, ...]]):
         """Return the different parts, and the indices of those of each cell: formulas that read one range
         share a part.
         """
-        found: list[Part] = []
+        result: list[Part] = []
         numbers: dict[tuple[int, ...], int] = {}
         links: dict[Cell, list[int]] = {}
         for cell, parts in self.parts.items():
             keys = [part.key if isinstance(part, Stretch) else (id(part),) for part in parts]
             for key, part in zip(keys, parts, strict=True):
                 if key not in numbers:
-                    numbers[key] = len(found)
-                    found.append(part)
+                    numbers[key] = len(result)
+                    result.append(part)
             links[cell] = [numbers[key] for key in keys]
-        return found, links
+        return result, links

@@ -51,14 +51,14 @@ def _chain(tree: ir.Binary, change: Callable[[ir.Expression], ir.Expression | No
 
 def is_bound(tree: ir.Expression) -> bool:
     """Whether the tree holds a variable of `LET` or `LAMBDA`."""
-    found: list[ir.Expression] = []
+    result: list[ir.Expression] = []
 
     def look(part: ir.Expression) -> None:
         if isinstance(part, ir.Variable):
-            found.append(part)
+            result.append(part)
 
     substitute(tree, look)
-    return bool(found)
+    return bool(result)
 
 
 _MOST: Final = 2000
@@ -70,9 +70,9 @@ def unfold(tree: ir.Expression) -> ir.Expression:
 
     A formula with a LAMBDA in it, or one that would become very long, is left as it is.
     """
-    found: list[ir.Expression] = []
-    _look_for_let(tree, found)
-    if not all(isinstance(part, ir.Let) and not part.recursive for part in found) or not found:
+    result: list[ir.Expression] = []
+    _look_for_let(tree, result)
+    if not all(isinstance(part, ir.Let) and not part.recursive for part in result) or not result:
         return tree
     budget = _Budget()
     try:
@@ -81,12 +81,12 @@ def unfold(tree: ir.Expression) -> ir.Expression:
         return tree
 
 
-def _look_for_let(tree: ir.Expression, found: list[ir.Expression]) -> None:
+def _look_for_let(tree: ir.Expression, result: list[ir.Expression]) -> None:
     """Collect the parts of a formula that bind or name something."""
 
     def look(part: ir.Expression) -> None:
         if isinstance(part, ir.Let | ir.Lambda | ir.Invoke | ir.FunctionName):
-            found.append(part)
+            result.append(part)
 
     substitute(tree, look)
 

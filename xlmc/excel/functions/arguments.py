@@ -62,8 +62,8 @@ def error_where(condition: Bools, code: int) -> Codes:
 def first_error(*codes: Codes) -> Codes:
     """Return, element by element, the first code that is an error; the codes broadcast."""
     result = np.zeros(1, np.uint8)
-    for found in codes:
-        result = np.where(result > 0, result, found)
+    for values in codes:
+        result = np.where(result > 0, result, values)
     return result
 
 

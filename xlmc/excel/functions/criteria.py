@@ -59,11 +59,11 @@ def which_meet(criterion: Value, cells: Value, *, begins: bool = False, date1904
     """
     read = partial(_read_stripped, date1904=date1904)
     operators, operand = _parse(criterion, _BEGINS if begins else "=", read)
-    wanted, found = to_ordered(operand, cells)
+    wanted, order = to_ordered(operand, cells)
     present = sorted(set(operators.tolist()))
-    result = _match(present[0], wanted, found, read)
+    result = _match(present[0], wanted, order, read)
     for operator in present[1:]:
-        result = np.where((operators == operator)[:, None], _match(operator, wanted, found, read), result)
+        result = np.where((operators == operator)[:, None], _match(operator, wanted, order, read), result)
     return result
 
 
@@ -88,9 +88,9 @@ def _parse(criterion: Value, plain: str, read: _Read) -> tuple[Objects, Value]:
 
 def _split(text: str, plain: str, read: _Read) -> tuple[str, object]:
     """Split `">=5"` into `>=` and 5."""
-    found = _OPERATOR.fullmatch(text)
-    assert found is not None
-    operator, rest = found.groups()
+    match = _OPERATOR.fullmatch(text)
+    assert match is not None
+    operator, rest = match.groups()
     if not rest:
         return (operator, None) if operator else ("=", "")
     return operator or plain, _read_operand(rest, read)
@@ -109,47 +109,47 @@ def _read_operand(text: str, read: _Read) -> object:
         return text
 
 
-def _match(operator: str, wanted: Ordered, found: Ordered, read: _Read) -> Bools:
+def _match(operator: str, wanted: Ordered, order: Ordered, read: _Read) -> Bools:
     if operator in _RELATIONS:
-        comparable = (found.kinds == wanted.kinds) & (found.kinds != BLANK) & (found.kinds < ERROR)
-        return np.asarray(comparable & COMPARISONS[operator](found.order, wanted.order))
-    equal = _match_equal(wanted, found, operator == _BEGINS, read if operator != "<>" else None)
+        comparable = (order.kinds == wanted.kinds) & (order.kinds != BLANK) & (order.kinds < ERROR)
+        return np.asarray(comparable & COMPARISONS[operator](order.order, wanted.order))
+    equal = _match_equal(wanted, order, operator == _BEGINS, read if operator != "<>" else None)
     return ~equal if operator == "<>" else equal
 
 
-def _match_equal(wanted: Ordered, found: Ordered, begins: bool, read: _Read | None) -> Bools:
+def _match_equal(wanted: Ordered, order: Ordered, begins: bool, read: _Read | None) -> Bools:
     """Return which cells equal the operand; with `read`, the texts that read as a number equal it too."""
     equal = COMPARISONS["="]
-    result = (found.kinds == wanted.kinds) & equal(found.order, wanted.order)
+    result = (order.kinds == wanted.kinds) & equal(order.order, wanted.order)
     is_number, is_text = wanted.kinds == NUMBER, wanted.kinds == TEXT
-    if read is not None and is_number.any() and (found.kinds == TEXT).any():
-        result = result | (is_number & equal(_numbers_of_texts(found, read), wanted.order))
+    if read is not None and is_number.any() and (order.kinds == TEXT).any():
+        result = result | (is_number & equal(_numbers_of_texts(order, read), wanted.order))
     for index in np.unique(wanted.order[is_text]).tolist():
         text = wanted.text(index)
         if not text or begins or is_pattern(text):
-            fitting = found.kinds == BLANK if not text else _match_pattern(found, text, begins)
+            fitting = order.kinds == BLANK if not text else _match_pattern(order, text, begins)
             result = np.where(is_text & (wanted.order == index), result | fitting if not text else fitting, result)
     return np.asarray(result)
 
 
-def _numbers_of_texts(found: Ordered, read: _Read) -> Floats:
+def _numbers_of_texts(order: Ordered, read: _Read) -> Floats:
     """Return the number that each text reads as; NaN where there is no such number, or no text."""
-    numbers = [read(text) for text in found.texts]
+    numbers = [read(text) for text in order.texts]
     table = np.array([np.nan if number is None else number for number in numbers])
-    return np.asarray(_look_up_texts(found, table, np.nan))
+    return np.asarray(_look_up_texts(order, table, np.nan))
 
 
-def _match_pattern(found: Ordered, pattern: str, begins: bool) -> Bools:
+def _match_pattern(order: Ordered, pattern: str, begins: bool) -> Bools:
     fits = pattern_of(pattern, begins).fits
-    present = set(np.unique(found.order[found.kinds == TEXT]).astype(np.intp).tolist())
-    table = np.array([index in present and fits(text) for index, text in enumerate(found.texts)])
-    return np.asarray(_look_up_texts(found, table, False))
+    present = set(np.unique(order.order[order.kinds == TEXT]).astype(np.intp).tolist())
+    table = np.array([index in present and fits(text) for index, text in enumerate(order.texts)])
+    return np.asarray(_look_up_texts(order, table, False))
 
 
-def _look_up_texts(found: Ordered, table: Any, otherwise: Any) -> Any:
+def _look_up_texts(order: Ordered, table: Any, otherwise: Any) -> Any:
     """Return the table's entry for each text, and `otherwise` where a cell holds none."""
-    is_text = found.kinds == TEXT
-    return np.where(is_text, table[np.where(is_text, found.order, 0).astype(np.intp)], otherwise)
+    is_text = order.kinds == TEXT
+    return np.where(is_text, table[np.where(is_text, order.order, 0).astype(np.intp)], otherwise)
 
 
 _TOKEN = re.compile(r"~.|~$|.", re.DOTALL)
@@ -175,10 +175,10 @@ class _Pattern:
 
     def _rest_fits(self, text: str, start: int) -> bool:
         for piece, _ in self.pieces[1:-1]:
-            found = piece.search(text, start)
-            if found is None:
+            match = piece.search(text, start)
+            if match is None:
                 return False
-            start = found.end()
+            start = match.end()
         tail, length = self.pieces[-1]
         return len(text) - length >= start and tail.match(text, len(text) - length) is not None
 

@@ -131,10 +131,10 @@ _register("DSTDEVP", "Standard deviation of the records.", fold_of_numbers(aggre
 
 def _only_cell(column: Value, matching: Bools) -> Value:
     """Return the cell of the only record; `#VALUE!` for no record, `#NUM!` for several."""
-    found = pick(column, matching.argmax(axis=1), np.zeros(1, np.intp))
+    value = pick(column, matching.argmax(axis=1), np.zeros(1, np.intp))
     count = matching.sum(axis=1)
     none, several = error_where(count == 0, ErrorCode.VALUE), error_where(count > 1, ErrorCode.NUM)
-    return with_errors(found, first_error(none, several))
+    return with_errors(value, first_error(none, several))
 
 
 _register("DGET", "The field of the only record that matches the criteria.", _only_cell, Kind.ANY, Facts())

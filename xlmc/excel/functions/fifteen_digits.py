@@ -95,14 +95,14 @@ def _last_equal(number: float, sign: int) -> float:
     (bits,) = struct.unpack("<q", struct.pack("<d", number))  # doubles are in the order of their bits
 
     def at(steps: int) -> float:
-        (found,) = struct.unpack("<d", struct.pack("<q", bits + sign * steps))
-        return float(found)
+        (value,) = struct.unpack("<d", struct.pack("<q", bits + sign * steps))
+        return float(value)
 
     near, far = 0, _FARTHEST
     while far - near > 1:
         middle = (near + far) // 2
-        found = at(middle)
-        if math.isfinite(found) and _are_equal(found, number):
+        result = at(middle)
+        if math.isfinite(result) and _are_equal(result, number):
             near = middle
         else:
             far = middle
@@ -139,9 +139,9 @@ class Comparison:
         above = np.greater(apart, limit, out=out)
         if np.count_nonzero(above) + np.count_nonzero(apart < -limit) == apart.size:
             return _from_above(self.symbol, above)
-        found: Bools = self.plain(x, y, out=out)
-        found[_find_equal(x, y, np.abs(apart, out=apart) <= limit)] = self.symbol in ("=", "<=", ">=")
-        return found
+        mask: Bools = self.plain(x, y, out=out)
+        mask[_find_equal(x, y, np.abs(apart, out=apart) <= limit)] = self.symbol in ("=", "<=", ">=")
+        return mask
 
 
 def _from_above(symbol: str, above: Bools) -> Bools:
@@ -171,11 +171,11 @@ def _compare_with_constant(symbol: str, x: Any, equal: tuple[float, float], out:
         case ">=":
             return np.asarray(np.greater_equal(x, least, out=out))
         case "=":
-            found = np.asarray(np.greater_equal(x, least, out=out))
-            return np.asarray(np.logical_and(found, np.less_equal(x, most), out=found))
+            values = np.asarray(np.greater_equal(x, least, out=out))
+            return np.asarray(np.logical_and(values, np.less_equal(x, most), out=values))
         case _:
-            found = np.asarray(np.less(x, least, out=out))
-            return np.asarray(np.logical_or(found, np.greater(x, most), out=found))
+            values = np.asarray(np.less(x, least, out=out))
+            return np.asarray(np.logical_or(values, np.greater(x, most), out=values))
 
 
 def _find_equal(x: Floats, y: Floats, near: Bools) -> tuple[NDArray[np.intp], ...]:
@@ -243,14 +243,14 @@ class SnapToZero:
         limit = 2.0 * EIGHT_UNITS * (_size(first) if self.largest is None else self.largest)
         last_bits = None if _is_far_from_0(result, max(limit, TINIEST)) else _is_last_bits(result, first)
         if out is None:
-            found: Floats = np.array(result if last_bits is None else np.broadcast_to(result, last_bits.shape))
+            values: Floats = np.array(result if last_bits is None else np.broadcast_to(result, last_bits.shape))
         else:
-            found = out
-            if found is not result:
-                np.copyto(found, result)
+            values = out
+            if values is not result:
+                np.copyto(values, result)
         if last_bits is not None:
-            found[last_bits] = 0.0
-        return found
+            values[last_bits] = 0.0
+        return values
 
 
 def _size(x: Floats) -> float:

@@ -122,9 +122,9 @@ def _is_case(x: Value, y: Value) -> Value:
     """Whether two values are equal as SWITCH has it: a logical equals no empty cell."""
     if x.numbers.ndim != y.numbers.ndim:
         x, y = x.as_range(), y.as_range()
-    found = compare(operator.eq, COMPARISONS["="].plain, x, y)
+    value = compare(operator.eq, COMPARISONS["="].plain, x, y)
     apart = (x.kinds == BLANK) & (y.kinds == LOGICAL) | (x.kinds == LOGICAL) & (y.kinds == BLANK)
-    return Value.of_logicals((found.numbers != 0) & ~apart, found.errors if found.errors.any() else None)
+    return Value.of_logicals((value.numbers != 0) & ~apart, value.errors if value.errors.any() else None)
 
 
 IS_CASE: Final = replace(ALL_BITS["="], body=_is_case)

@@ -46,19 +46,19 @@ class Ordered:
 
     def text(self, order: float) -> str:
         """Return the text of an order, in lower case."""
-        found = self.between.get(order)
-        return self.texts[int(order)] if found is None else found
+        result = self.between.get(order)
+        return self.texts[int(order)] if result is None else result
 
     @cached_property
     def rising(self) -> dict[int, tuple[Indices, Floats]]:
         """Kind -> the indices of its values in (1, k), and the values, in rising order; errors are left out."""
         kinds, order = self.kinds[0], self.order[0]
-        found = {}
+        result = {}
         for kind in np.unique(kinds[kinds < ERROR]).tolist():
             indices = np.flatnonzero(kinds == kind)
             indices = indices[np.argsort(order[indices], kind="stable")]
-            found[kind] = indices, order[indices]
-        return found
+            result[kind] = indices, order[indices]
+        return result
 
     def column(self, index: int, n: int) -> Ordered:
         """Return the values at one index, in n trials: (n, 1)."""
@@ -156,11 +156,11 @@ def search_each_trial(keys: Value, vector: Value, find: Callable[[Ordered, Order
     Returns:
         The shape of `keys`, with the trials of both.
     """
-    wanted, found = to_ordered(keys, vector)
+    wanted, order = to_ordered(keys, vector)
     n = max(keys.shape[0], vector.shape[0])
     if vector.shape[0] == 1:
-        return find(wanted.flat(), found).reshape(keys.shape)
-    columns = [find(wanted.column(j, n), found) for j in range(wanted.order.shape[1])]
+        return find(wanted.flat(), order).reshape(keys.shape)
+    columns = [find(wanted.column(j, n), order) for j in range(wanted.order.shape[1])]
     return np.stack(columns, axis=1).reshape(n, *keys.shape[1:])
 
 

@@ -194,8 +194,8 @@ class Function:
         numbers = self.ufunc is not None and not sets and kinds <= {Kind.NUMBER, Kind.ANY}
         fast = self.ufunc.nin if numbers and self.ufunc is not None and self.ufunc.nin < 3 else 0
         answers = {"takes_values": values, "takes_sets": sets, "on_numbers": numbers, "fast_arity": fast}
-        for name, found in answers.items():
-            object.__setattr__(self, name, found)
+        for name, value in answers.items():
+            object.__setattr__(self, name, value)
         if self.facts.spills and (self.ufunc is not None or (self.parameters and not values)):
             raise ValueError(f"{self.name} spills: it takes `Anything`, `Cells` or `Arrays`, and has no ufunc")
 
@@ -267,10 +267,10 @@ class Function:
             key = id(argument), self.parameter(position).kind
             if key not in known:
                 known[key] = _coerce(argument, key[1])
-            array, found = known[key]
+            array, values = known[key]
             arrays.append(array)
-            if found.size != 1 or found.item():  # one that is none changes nothing
-                errors = np.where(errors > 0, errors, found).astype(np.uint8, copy=False)
+            if values.size != 1 or values.item():  # one that is none changes nothing
+                errors = np.where(errors > 0, errors, values).astype(np.uint8, copy=False)
         if errors.all():  # else the body would compute, text by text at worst, results that the errors replace
             shape = np.broadcast_shapes(errors.shape, *(array.shape for array in arrays))
             return Value.of_errors(np.broadcast_to(errors, shape))
@@ -339,14 +339,14 @@ def side_by_side(arguments: Sequence[Value], kind: Kind) -> tuple[NDArray[Any], 
     columns, counted, errors = [], [], []
     for argument in arguments:
         in_range = argument.numbers.ndim == 3
-        x, found = (argument.numbers, argument.errors) if in_range else _coerce(argument, kind)
+        x, values = (argument.numbers, argument.errors) if in_range else _coerce(argument, kind)
         wanted = (argument.kinds == NUMBER) if kind is Kind.NUMBER else (argument.kinds <= LOGICAL)
-        counts = (wanted if in_range else argument.kinds < ERROR) & (found == 0)
+        counts = (wanted if in_range else argument.kinds < ERROR) & (values == 0)
         columns.append(flatten_cells(x, argument))
         counted.append(flatten_cells(counts, argument))
-        errors.append(flatten_cells(found, argument))
-    x, counts, found = (join_cells(part) for part in (columns, counted, errors))
-    return (x if kind is Kind.NUMBER else x != 0), counts, first_error_in_row(found)
+        errors.append(flatten_cells(values, argument))
+    x, counts, values = (join_cells(part) for part in (columns, counted, errors))
+    return (x if kind is Kind.NUMBER else x != 0), counts, first_error_in_row(values)
 
 
 REGISTRY: Final[dict[str, Function]] = {}

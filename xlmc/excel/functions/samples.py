@@ -89,8 +89,8 @@ class Sample:
 
     def count_where(self, relation: Callable[[Floats, Floats], Bools], points: Floats) -> Floats:
         """Count the numbers of each trial that are, say, less than each point: (n, m) -> (n, m)."""
-        found = [(relation(self.x, column[:, None]) & self.counts).sum(axis=1) for column in points.T]
-        return np.stack(found, axis=1).astype(np.float64)
+        result = [(relation(self.x, column[:, None]) & self.counts).sum(axis=1) for column in points.T]
+        return np.stack(result, axis=1).astype(np.float64)
 
 
 def sample_of(value: Value) -> Sample:
@@ -140,9 +140,9 @@ def points_of(*values: Value) -> tuple[list[Floats], list[Codes], tuple[int, ...
     """Return arguments as numbers (n, m) and errors (n, m), and the shape (n,) or (n, r, c) that they broadcast to."""
     level = align_ranges(*values)
     shape = np.broadcast_shapes(*(value.shape for value in level))
-    found = [value.to_numbers() for value in level]
+    result = [value.to_numbers() for value in level]
     whole = Value(np.zeros(shape), np.zeros(shape, np.uint8))
-    return [flatten_cells(x, whole) for x, _ in found], [flatten_cells(codes, whole) for _, codes in found], shape
+    return [flatten_cells(x, whole) for x, _ in result], [flatten_cells(codes, whole) for _, codes in result], shape
 
 
 def restore_shape(result: Floats, errors: Codes, shape: tuple[int, ...]) -> Value:

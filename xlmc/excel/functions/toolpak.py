@@ -80,12 +80,12 @@ def _of_values(
     errors, all_valid = np.zeros(1, np.uint8), np.ones(1, bool)
     x: Any
     for value, parameter in zip(align_ranges(*values), parameters, strict=False):
-        x, found = value.to_logicals() if parameter.kind is Kind.LOGICAL else strict_numbers(value)
+        x, results = value.to_logicals() if parameter.kind is Kind.LOGICAL else strict_numbers(value)
         if isinstance(parameter, _DateParameter):
             x, valid = whole_days(x, date1904)
             all_valid = all_valid & valid
         arrays.append(x)
-        errors = np.where(errors > 0, errors, found).astype(np.uint8)
+        errors = np.where(errors > 0, errors, results).astype(np.uint8)
     arrays += [parameter.default for parameter in parameters[len(values) :]]
     result = np.where(all_valid, body(*arrays), NUM)
     return Value.of_numbers(np.broadcast_to(result, np.broadcast_shapes(result.shape, errors.shape)), errors)
@@ -130,7 +130,7 @@ def numbers_only(body: Callable[..., Any]) -> Callable[..., Value]:
     def strict(*values: Value) -> Value:
         pairs = [strict_numbers(value) for value in align_ranges(*values)]
         result = np.atleast_1d(body(*(numbers for numbers, _ in pairs)))
-        errors = first_error(*(found for _, found in pairs))
+        errors = first_error(*(results for _, results in pairs))
         return Value.of_logicals(result, errors) if result.dtype == bool else Value.of_numbers(result, errors)
 
     return strict

@@ -296,10 +296,10 @@ def kept_with_table(make: Callable[Concatenate[Value, P], T]) -> Callable[Concat
     def made(value: Value, /, *args: P.args, **kwargs: P.kwargs) -> T:
         if value.shape[0] != 1 or kwargs:
             return make(value, *args, **kwargs)
-        found = kept.setdefault(value, {})
-        if args not in found:
-            found[args] = make(value, *args, **kwargs)
-        return found[args]
+        result = kept.setdefault(value, {})
+        if args not in result:
+            result[args] = make(value, *args, **kwargs)
+        return result[args]
 
     return made
 

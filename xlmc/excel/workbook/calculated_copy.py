@@ -50,7 +50,7 @@ def copy_with_values(
 
 
 def _by_sheet(cells: Mapping[Cell, CellValue]) -> dict[str, dict[tuple[int, int], CellValue]]:
-    found: dict[str, dict[tuple[int, int], CellValue]] = {}
+    result: dict[str, dict[tuple[int, int], CellValue]] = {}
     for cell, value in cells.items():
-        found.setdefault(cell.sheet, {})[cell.row, cell.column] = value
-    return found
+        result.setdefault(cell.sheet, {})[cell.row, cell.column] = value
+    return result

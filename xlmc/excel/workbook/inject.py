@@ -74,7 +74,9 @@ def inject(
     styles = _Styles.merged(user, built, taken)
     carrier = _carrier(user, built, names, styles.numbers, taken)
     rels, pointers = add_pointers(user.parts[user.role.rels], user.role.rels, _targets(user, carrier, styles))
-    added = [_new_sheet(*found, names, carrier.renames, marked) for found in zip(built.sheets, pointers, strict=False)]
+    added = [
+        _new_sheet(*result, names, carrier.renames, marked) for result in zip(built.sheets, pointers, strict=False)
+    ]
     carried = carrier.parts()
     if user.is_strict:
         carried = {name: strict_part(content) if _is_xml(name) else content for name, content in carried.items()}
@@ -128,9 +130,9 @@ def _carrier(
 def _targets(user: Host, carrier: Carrier, styles: _Styles) -> list[tuple[str, str]]:
     """Return what the workbook part has to point to, as (type, target): each sheet, then the styles if they are new."""
     workbook = user.role.workbook
-    found = [(sheet.type, relative_target(workbook, carrier.names[sheet.part])) for sheet in carrier.built.sheets]
-    found += [(_STYLES_POINTER, relative_target(workbook, styles.part))] if styles.new else []
-    return [(strict_type(kind), target) for kind, target in found] if user.is_strict else found
+    result = [(sheet.type, relative_target(workbook, carrier.names[sheet.part])) for sheet in carrier.built.sheets]
+    result += [(_STYLES_POINTER, relative_target(workbook, styles.part))] if styles.new else []
+    return [(strict_type(kind), target) for kind, target in result] if user.is_strict else result
 
 
 def _is_xml(name: str) -> bool:

@@ -70,9 +70,9 @@ def label_of(book: Workbook, cell: Cell) -> Label:
     right = book.content(Cell(cell.sheet, cell.row, cell.column + 1))
     if not unit and right.formula is None and isinstance(right.value, str) and _is_unit(right.value.strip()):
         unit = right.value.strip()
-    found = _IN_BRACKETS.match(name)
-    if found is not None and (not unit or found["unit"].casefold() == unit.casefold()) and _is_unit(found["unit"]):
-        name, unit = found["name"], found["unit"]
+    match = _IN_BRACKETS.match(name)
+    if match is not None and (not unit or match["unit"].casefold() == unit.casefold()) and _is_unit(match["unit"]):
+        name, unit = match["name"], match["unit"]
     if not name:
         name = next((each.name for each in book.names if _stands_for(book, each.text, cell)), "")
     return Label(label(name.strip().rstrip(":=").strip())[:_LONGEST], unit.strip("()[] "))

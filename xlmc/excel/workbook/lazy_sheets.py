@@ -68,10 +68,10 @@ class LazySheets(Mapping[str, Sheet]):
 
     def with_sheets(self, changed: Mapping[str, Sheet]) -> LazySheets:
         """Return the same worksheets, but for those of these names."""
-        found = copy(self)
-        found._parsed = {**self._parsed, **changed}
-        found._changed = self._changed | changed.keys()
-        return found
+        lazy_sheets = copy(self)
+        lazy_sheets._parsed = {**self._parsed, **changed}
+        lazy_sheets._changed = self._changed | changed.keys()
+        return lazy_sheets
 
     def with_parts(self, parts: Mapping[str, bytes]) -> LazySheets:
         """Return the worksheets as other parts of the same structure hold them, none of them parsed yet."""
@@ -108,13 +108,13 @@ class LazySheets(Mapping[str, Sheet]):
         with naming_file(self._file):
             strings = self._context.strings
         numbers = {text: {at for at, each in enumerate(strings) if each == text} for text in texts}
-        found = []
+        result = []
         for entry in self._entries.values():
             xml = self._parts.get(entry.part, b"")
             shown = set(map(int, _SHARED.findall(xml)))
             if all(at & shown or text.encode() in xml for text, at in numbers.items()):
-                found.append(entry.name)
-        return found
+                result.append(entry.name)
+        return result
 
     @cached_property
     def _context(self) -> CellContext:
@@ -173,12 +173,12 @@ def dynamic_array_marks(xml: bytes, part: str) -> frozenset[str]:
 
 
 def _spilling_records(root: Element) -> list[int]:
-    future = next((found for found in root.findall("{*}futureMetadata") if found.get("name") == _DYNAMIC), ())
+    future = next((result for result in root.findall("{*}futureMetadata") if result.get("name") == _DYNAMIC), ())
     return [number for number, block in enumerate(future) if _spills(block)]
 
 
 def _spills(block: Element) -> bool:
-    return any(is_true(found.get("fDynamic")) for found in block.iterfind(".//{*}dynamicArrayProperties"))
+    return any(is_true(result.get("fDynamic")) for result in block.iterfind(".//{*}dynamicArrayProperties"))
 
 
 @contextmanager

@@ -67,8 +67,8 @@ class NumberFormat:
         positive = _NOT_DIGITS.sub("", code).split(";")[0]
         if positive.strip().casefold() in ("", "general", "standard"):
             return cls(None, False, False)
-        found = _DECIMALS.search(positive)
-        return cls(len(found[1]) if found else 0, "%" in positive, "E" in positive.upper())
+        match = _DECIMALS.search(positive)
+        return cls(len(match[1]) if match else 0, "%" in positive, "E" in positive.upper())
 
     def __str__(self) -> str:
         """In words, as a message needs it."""
@@ -90,10 +90,10 @@ def number_formats(parts: Mapping[str, bytes], workbook: str, sheet: str) -> dic
         WorkbookError: the styles are damaged.
     """
     known = [NumberFormat.of(code or _built_in(number)) for number, code in _formats(parts, workbook)]
-    found = _CELL.findall(parts[sheet])
+    result = _CELL.findall(parts[sheet])
     return {
         (int(row), column_number(column.decode())): known[int(style)]
-        for column, row, style in found
+        for column, row, style in result
         if int(style) < len(known)
     }
 
@@ -111,7 +111,7 @@ def cell_formats(
     Raises:
         WorkbookError: the styles are damaged.
     """
-    known, found = _formats(parts, workbook), {}
+    known, result = _formats(parts, workbook), {}
     passed: dict[str, int] = {}
     for sheet, place in places:
         xml, reference = parts.get(sheet, b""), f' r="{place}"'.encode()
@@ -123,8 +123,8 @@ def cell_formats(
         tag = xml[xml.rfind(b"<", 0, at) : xml.find(b">", at)] if at > 0 else b""
         style = _STYLE.search(tag)
         number, code = known[int(style[1])] if style and int(style[1]) < len(known) else ("0", "")
-        found[sheet, place] = code or (_OTHERS.get(int(number)) if number.isdecimal() else None) or _built_in(number)
-    return found
+        result[sheet, place] = code or (_OTHERS.get(int(number)) if number.isdecimal() else None) or _built_in(number)
+    return result
 
 
 def _formats(parts: Mapping[str, bytes], workbook: str) -> list[tuple[str, str]]:

@@ -150,10 +150,10 @@ def content_type(parts: Mapping[str, bytes], part: str) -> str:
     if CONTENT_TYPES not in parts:
         return ""
     named = tree(parts[CONTENT_TYPES], CONTENT_TYPES).findall("{*}Override")
-    found = (
+    result = (
         each.get("ContentType", "") for each in named if each.get("PartName", "").casefold() == f"/{part}".casefold()
     )
-    return next(found, "")
+    return next(result, "")
 
 
 def relative_target(source: str, target: str) -> str:
@@ -286,5 +286,5 @@ def _in_package(stored: Mapping[str, str], meant: Relationship) -> Relationship:
     """
     if meant.external:
         return meant
-    found = stored.get(meant.target.casefold()) or stored.get(unquote(meant.target).casefold())
-    return meant if found is None else replace(meant, target=found)
+    text = stored.get(meant.target.casefold()) or stored.get(unquote(meant.target).casefold())
+    return meant if text is None else replace(meant, target=text)

@@ -39,13 +39,13 @@ def checked_bytes(parts: Mapping[str, bytes], before: Mapping[str, bytes], level
         WorkbookError: the package would have a fault that it did not have before.
     """
     changed = {name for name, content in parts.items() if before.get(name) != content}
-    found = faults(parts, changed)
-    if found:
+    result = faults(parts, changed)
+    if result:
         had = set(faults(before, before.keys() & changed))
-        found = [fault for fault in found if fault not in had]
-    if found:
-        more = f"; and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
-        named = "; ".join(fault[:200] for fault in found[:_MOST_NAMED])
+        result = [fault for fault in result if fault not in had]
+    if result:
+        more = f"; and {len(result) - _MOST_NAMED} more" if len(result) > _MOST_NAMED else ""
+        named = "; ".join(fault[:200] for fault in result[:_MOST_NAMED])
         raise WorkbookError(f"the file that was to be written would be damaged: {named}{more}", hint=REPAIR)
     return package_bytes(parts, level)
 
@@ -62,15 +62,15 @@ def faults(parts: Mapping[str, bytes], looked_at: Iterable[str]) -> list[str]:
     """
     role = roles(parts)
     names = sorted(name for name in looked_at if name in parts)
-    found = [*_content_type_faults(parts), *_sheet_faults(parts, role.workbook), *_table_faults(parts, role.workbook)]
+    result = [*_content_type_faults(parts), *_sheet_faults(parts, role.workbook), *_table_faults(parts, role.workbook)]
     entries = _cell_styles(parts, role.styles)
     for name in names:
-        found += _xml_faults(name, parts[name])
-        found += _style_faults(name, parts[name], entries)
+        result += _xml_faults(name, parts[name])
+        result += _style_faults(name, parts[name], entries)
     sources = [*("" for name in names if name == rels_part("")), *(name for name in parts if rels_part(name) in names)]
     for source in sources:
-        found += _pointer_faults(parts, source)
-    return found
+        result += _pointer_faults(parts, source)
+    return result
 
 
 def _content_type_faults(parts: Mapping[str, bytes]) -> Iterator[str]:
@@ -117,9 +117,9 @@ def _sheet_faults(parts: Mapping[str, bytes], workbook: str) -> Iterator[str]:
 
 def _table_faults(parts: Mapping[str, bytes], workbook: str) -> Iterator[str]:
     """Tables have numbers and names of their own."""
-    found = list(tables_in(parts, workbook))
-    yield from (f"two tables have the number {value!r}" for value in _repeated([each.get("id", "") for each in found]))
-    names = [each.get("displayName", "").casefold() for each in found]
+    result = list(tables_in(parts, workbook))
+    yield from (f"two tables have the number {value!r}" for value in _repeated([each.get("id", "") for each in result]))
+    names = [each.get("displayName", "").casefold() for each in result]
     yield from (f"two tables have the name {value!r}" for value in _repeated(names))
 
 
@@ -134,9 +134,9 @@ def _cell_styles(parts: Mapping[str, bytes], styles: str | None) -> int | None:
 def _style_faults(name: str, xml: bytes, entries: int | None) -> Iterator[str]:
     if entries is None or "/worksheets/" not in f"/{name}":
         return
-    found = styles_from(xml, max(entries, 1))
-    if found:
-        yield f"{name} uses the cell style {min(found)}, which is not there"
+    result = styles_from(xml, max(entries, 1))
+    if result:
+        yield f"{name} uses the cell style {min(result)}, which is not there"
 
 
 def _xml_faults(name: str, xml: bytes) -> Iterator[str]:

@@ -29,13 +29,13 @@ def pivot_tables(parts: Mapping[str, bytes], sheets: Sequence[SheetEntry], date1
     """Return the pivot tables of a workbook that are whole, if a formula asks for one."""
     if not any(b"GETPIVOTDATA" in parts.get(part, b"") for part in (*(s.part for s in sheets), "xl/workbook.xml")):
         return ()
-    found = (
+    result = (
         _whole(parts, relation.target, sheet.name, date1904)
         for sheet in sheets
         for relation in relationships(parts, sheet.part).values()
         if relation.kind == "pivotTable"
     )
-    return tuple(table for table in found if table is not None)
+    return tuple(table for table in result if table is not None)
 
 
 def _whole(parts: Mapping[str, bytes], part: str, sheet: str, date1904: bool) -> PivotTable | None:
@@ -52,8 +52,8 @@ class _Reading:
     def __init__(self, parts: Mapping[str, bytes], part: str, sheet: str, date1904: bool) -> None:
         self._sheet, self._date1904 = sheet, date1904
         self._root = self._read(parts, part)
-        found = (rel.target for rel in relationships(parts, part).values() if rel.kind == "pivotCacheDefinition")
-        self._cache = self._read(parts, next(found, ""))
+        result = (rel.target for rel in relationships(parts, part).values() if rel.kind == "pivotCacheDefinition")
+        self._cache = self._read(parts, next(result, ""))
 
     def _read(self, parts: Mapping[str, bytes], part: str) -> Element:
         if part not in parts:

@@ -50,16 +50,16 @@ def _area(book: Workbook, place: str) -> Area:
     name = book.defined_name(text)
     only = next(iter(book.sheets), None) if len(book.sheets) == 1 else None
     try:
-        found = parse_address(_with_corners(text if name is None else name.text), only)
+        reference = parse_address(_with_corners(text if name is None else name.text), only)
     except ValueError as error:
         cure = "write Sheet!Cell, or a defined name that stands for cells"
         raise KeyError(f"{place!r} is no cell of {book.name}: {cure}") from error
-    sheet = book.sheet_named(found.sheet)
+    sheet = book.sheet_named(reference.sheet)
     if sheet is None:
-        raise KeyError(f"there is no sheet {found.sheet!r} in {book.name}; there are {', '.join(book.sheets)}")
-    if isinstance(found, Cell):
-        return Area(sheet.name, found.row, found.column, found.row, found.column)
-    return replace(found, sheet=sheet.name)
+        raise KeyError(f"there is no sheet {reference.sheet!r} in {book.name}; there are {', '.join(book.sheets)}")
+    if isinstance(reference, Cell):
+        return Area(sheet.name, reference.row, reference.column, reference.row, reference.column)
+    return replace(reference, sheet=sheet.name)
 
 
 def _with_corners(text: str) -> str:

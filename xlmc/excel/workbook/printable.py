@@ -49,10 +49,10 @@ def label(text: str) -> str:
     return printable(text.replace("\r\n", "\n"))
 
 
-def _decoded(found: re.Match[str]) -> str:
-    return found[0].encode("ascii", "surrogateescape").decode("utf-8", "surrogateescape")
+def _decoded(match: re.Match[str]) -> str:
+    return match[0].encode("ascii", "surrogateescape").decode("utf-8", "surrogateescape")
 
 
-def _escape(found: re.Match[str]) -> str:
-    code = ord(found[0])
+def _escape(match: re.Match[str]) -> str:
+    code = ord(match[0])
     return f"\\x{code:02x}" if code < 0x100 else f"\\u{code:04x}"

@@ -56,10 +56,10 @@ def read_workbook(
         WorkbookError: the file cannot be opened, is no workbook, is encrypted, damaged or unreasonably large.
     """
     if isinstance(source, bytes):
-        found = _read(source, name or "workbook", name or "workbook")
+        workbook = _read(source, name or "workbook", name or "workbook")
     else:
-        found = _read(_file_bytes(Path(source)), name or Path(source).name, str(source))
-    return found if functions is None else replace(found, functions=functions)
+        workbook = _read(_file_bytes(Path(source)), name or Path(source).name, str(source))
+    return workbook if functions is None else replace(workbook, functions=functions)
 
 
 def _read(data: bytes, name: str, where: str) -> Workbook:
@@ -97,8 +97,8 @@ def _saved_by(parts: Mapping[str, bytes]) -> str:
     """Return the program that saved a workbook last; of one that LibreOffice converted, the program of its format."""
     if (form := converted_from(parts)) is not None:
         return form.program
-    found = _APPLICATION.search(parts.get("docProps/app.xml", b""))
-    name = "" if found is None else label(found[1].decode("utf-8", "replace"))
+    match = _APPLICATION.search(parts.get("docProps/app.xml", b""))
+    name = "" if match is None else label(match[1].decode("utf-8", "replace"))
     return next((each for each in ("LibreOffice", "Excel") if each in name), name.partition("/")[0])
 
 
@@ -207,14 +207,14 @@ def _on_links(parts: Mapping[str, bytes], structure: Structure) -> Iterator[str]
 
 def _category(parts: Mapping[str, bytes]) -> str:
     """Return the category in the workbook's properties."""
-    found = _CATEGORY.search(parts.get("docProps/core.xml", b""))
-    return found[1].decode(errors="replace").strip() if found else ""
+    match = _CATEGORY.search(parts.get("docProps/core.xml", b""))
+    return match[1].decode(errors="replace").strip() if match else ""
 
 
 def _age(parts: Mapping[str, bytes]) -> str:
     """Say how old the links are: no newer than the file, which does not say when they were updated."""
-    found = _SAVED_AT.search(parts.get("docProps/core.xml", b""))
-    return f", of {found[1].decode()} or older" if found else ", at a time that the file does not tell"
+    match = _SAVED_AT.search(parts.get("docProps/core.xml", b""))
+    return f", of {match[1].decode()} or older" if match else ", at a time that the file does not tell"
 
 
 def _on_signature(parts: Mapping[str, bytes]) -> Iterator[str]:
@@ -262,8 +262,8 @@ def linked_files(parts: Mapping[str, bytes], structure: Structure) -> list[str]:
 
 def _file(parts: Mapping[str, bytes], part: str) -> str:
     """Return the name of the file, without its folder; empty where the part names none."""
-    found = (link.target for link in relationships(parts, part).values() if link.external)
-    return posixpath.basename(next(found, "").replace("\\", "/"))
+    result = (link.target for link in relationships(parts, part).values() if link.external)
+    return posixpath.basename(next(result, "").replace("\\", "/"))
 
 
 def _linked_book(book: str, file: str, root: Element, part: str) -> LinkedBook:

@@ -118,7 +118,7 @@ def decode(text: str) -> str:
     """
     if "_x" not in text:
         return text
-    decoded = _ESCAPE.sub(lambda found: chr(int(found[1], 16)), text)
+    decoded = _ESCAPE.sub(lambda match: chr(int(match[1], 16)), text)
     # A pair of escapes may make one character; half a pair makes none that could be printed.
     return decoded.encode("utf-16-le", "surrogatepass").decode("utf-16-le", "replace")
 

@@ -79,17 +79,17 @@ def sealed_parts(parts: Mapping[str, bytes], sheet: str, book: str) -> dict[str,
     """
     part, pointers = free_part_names([_PART], claimed_names(parts))[_PART], rels_part(sheet)
     target = (_POINTER, relative_target(sheet, part))
-    found = dict(parts)
-    found[pointers] = add_pointers(parts.get(pointers, _NO_POINTERS), pointers, [target])[0]
+    result = dict(parts)
+    result[pointers] = add_pointers(parts.get(pointers, _NO_POINTERS), pointers, [target])[0]
     types = {part: _TYPE}
     if pointers not in parts:
         types[pointers] = "application/vnd.openxmlformats-package.relationships+xml"
-    found[CONTENT_TYPES] = add_types(parts[CONTENT_TYPES], types)
+    result[CONTENT_TYPES] = add_types(parts[CONTENT_TYPES], types)
     seal_content = {
         "book": book,
-        "sha256": {name: hashlib.sha256(content).hexdigest() for name, content in found.items()},
+        "sha256": {name: hashlib.sha256(content).hexdigest() for name, content in result.items()},
     }
-    return {**found, part: json.dumps(seal_content, indent=1).encode()}
+    return {**result, part: json.dumps(seal_content, indent=1).encode()}
 
 
 def sealed_text(content: bytes, ending: str, book: str) -> bytes:
@@ -137,11 +137,11 @@ def _seal_at_end(path: Path, ending: str) -> Seal | None:
         size = file.seek(0, 2)
         start = file.seek(max(0, size - _MOST))
         end = file.read()
-        found = re.search(re.escape(before) + _SEAL + re.escape(behind) + rb"\Z", end)
-        if found is None:
+        match = re.search(re.escape(before) + _SEAL + re.escape(behind) + rb"\Z", end)
+        if match is None:
             return None
-        book = unquote(found["book"].decode(), errors="surrogatepass")
-        return Seal(book, found[0] == before + _seal(book, _digest(file, start + found.start())) + behind)
+        book = unquote(match["book"].decode(), errors="surrogatepass")
+        return Seal(book, match[0] == before + _seal(book, _digest(file, start + match.start())) + behind)
 
 
 def _digest(file: BinaryIO, size: int) -> hashlib._Hash:

@@ -211,11 +211,11 @@ class _Pass:
         self._has_condition = False
 
     def _go_to(self, reference: str) -> None:
-        found = _A1.fullmatch(reference)
-        if found is None:
+        match = _A1.fullmatch(reference)
+        if match is None:
             raise WorkbookError(f"a cell of sheet {self._sheet!r} has the address {reference!r}", hint=REPAIR)
-        self._column = column_number(found[1])
-        self._row = int(found[2])
+        self._column = column_number(match[1])
+        self._row = int(match[2])
 
     def _shared(self, text: str) -> Formula:
         """Note a master's text and the area it is shared over; a child's own text, if any, does not count."""
@@ -228,15 +228,15 @@ class _Pass:
         return self._masters[index]
 
     def _data_table(self) -> DataTable:
-        found = self._attributes
-        existing = (key for key, deleted in (("r1", "del1"), ("r2", "del2")) if not is_true(found.get(deleted, "0")))
-        inputs = (found[key] for key in existing if key in found)
+        result = self._attributes
+        existing = (key for key, deleted in (("r1", "del1"), ("r2", "del2")) if not is_true(result.get(deleted, "0")))
+        inputs = (result[key] for key in existing if key in result)
         cells = [area_of(each, self._sheet, "an input of a data table") for each in inputs]
         return DataTable(
-            area_of(found.get("ref"), self._sheet, "a data table"),
+            area_of(result.get("ref"), self._sheet, "a data table"),
             tuple(Cell(area.sheet, area.top, area.left) for area in cells),
-            two_inputs=is_true(found.get("dt2D", "0")),
-            by_row=is_true(found.get("dtr", "0")),
+            two_inputs=is_true(result.get("dt2D", "0")),
+            by_row=is_true(result.get("dtr", "0")),
         )
 
     def _array(self, text: str) -> Formula:

@@ -74,7 +74,9 @@ class Structure:
 
     def target(self, kind: str) -> str | None:
         """Return the part that the workbook's first relationship of that kind points to."""
-        return next((found.target for found in self.relationships.values() if found.kind == kind), None)
+        return next(
+            (relationship.target for relationship in self.relationships.values() if relationship.kind == kind), None
+        )
 
 
 def free_sheet_name(parts: Mapping[str, bytes], wanted: str) -> str:
@@ -139,16 +141,16 @@ def _links(root: Element, rels: Mapping[str, Relationship]) -> Iterator[str]:
 
 
 def _workbook_part(parts: Mapping[str, bytes]) -> str:
-    found = next((rel.target for rel in relationships(parts).values() if rel.kind == "officeDocument"), None)
-    if found is None:
+    text = next((rel.target for rel in relationships(parts).values() if rel.kind == "officeDocument"), None)
+    if text is None:
         raise WorkbookError("the file is a zip, but not an Excel workbook", hint=SAVE_AS)
-    if found not in parts:
-        raise WorkbookError(f"the file lacks its workbook part ({found})", hint=REPAIR)
-    if found.lower().endswith(".bin"):
+    if text not in parts:
+        raise WorkbookError(f"the file lacks its workbook part ({text})", hint=REPAIR)
+    if text.lower().endswith(".bin"):
         raise WorkbookError("the file is a binary workbook (.xlsb)", hint=SAVE_AS)
-    if not tree(parts[found], found).tag.endswith("}workbook"):
+    if not tree(parts[text], text).tag.endswith("}workbook"):
         raise WorkbookError("the file is an Office document, but not a workbook", hint=SAVE_AS)
-    return found
+    return text
 
 
 def _sheet_entry(element: Element, rels: Mapping[str, Relationship], parts: Mapping[str, bytes]) -> SheetEntry:
@@ -191,12 +193,12 @@ def area_of(reference: str | None, sheet: str, what: str) -> Area:
         WorkbookError: there is no reference, or it is none; `what` says whose it is.
     """
     try:
-        found = parse_address(reference or "", sheet)
+        cell = parse_address(reference or "", sheet)
     except ValueError as error:
         raise WorkbookError(f"{what} of sheet {sheet!r} has no valid range: {error}", hint=REPAIR) from None
-    if isinstance(found, Cell):
-        return Area(sheet, found.row, found.column, found.row, found.column)
-    return found
+    if isinstance(cell, Cell):
+        return Area(sheet, cell.row, cell.column, cell.row, cell.column)
+    return cell
 
 
 def tables_of(parts: Mapping[str, bytes], sheet_part: str, sheet: str) -> Iterator[Table]:

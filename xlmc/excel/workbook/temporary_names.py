@@ -72,10 +72,10 @@ def _matching(folder: Path, pattern: re.Pattern[str]) -> list[Path]:
 
 
 def _is_abandoned(name: str, pattern: re.Pattern[str]) -> bool:
-    found = pattern.fullmatch(name)
-    if found is None or found["machine"] != _machine():
+    match = pattern.fullmatch(name)
+    if match is None or match["machine"] != _machine():
         return False
-    process = int(found["process"])
+    process = int(match["process"])
     return name not in _OURS if process == os.getpid() else not _lives(process)
 
 

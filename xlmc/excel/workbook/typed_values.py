@@ -68,8 +68,8 @@ def typed_value(text: str, book: Workbook) -> CellValue:
         raise ValueError(f"{bare!r} is a formula: type its value")
     if _COMMA.fullmatch(bare) and not _THOUSANDS.fullmatch(bare):
         raise ValueError(f"{bare!r} is no number: decimals stand behind a point, as in {bare.replace(',', '.')}")
-    found = float(bare) if _PLAIN.fullmatch(bare) else parse_number(bare, book.date1904)
-    return text if found is None or isinf(found) else found
+    value = float(bare) if _PLAIN.fullmatch(bare) else parse_number(bare, book.date1904)
+    return text if value is None or isinf(value) else value
 
 
 def typed_change(book: Workbook, text: str) -> tuple[Cell, CellValue]:

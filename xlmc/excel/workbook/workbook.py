@@ -235,23 +235,23 @@ class PivotTable:
     @cached_property
     def cells(self) -> Mapping[tuple[int, frozenset[tuple[int, int]]], tuple[Cell, ...]]:
         """Data field and the items that are shown -> where; a total may stand above its items, or below."""
-        found: dict[tuple[int, frozenset[tuple[int, int]]], tuple[Cell, ...]] = {}
+        result: dict[tuple[int, frozenset[tuple[int, int]]], tuple[Cell, ...]] = {}
         for down, row in enumerate(self.rows):
             for right, column in enumerate(self.columns):
                 if row is not None and column is not None:
                     data = next((place.data for place in (row, column) if place.data is not None), 0)
                     cell = Cell(self.origin.sheet, self.origin.row + down, self.origin.column + right)
                     key = data, row.items | column.items
-                    found[key] = (*found.get(key, ()), cell)
-        return found
+                    result[key] = (*result.get(key, ()), cell)
+        return result
 
     @cached_property
     def _by_item(self) -> Mapping[tuple[int, int], list[tuple[int, frozenset[tuple[int, int]]]]]:
-        found: dict[tuple[int, int], list[tuple[int, frozenset[tuple[int, int]]]]] = {}
+        result: dict[tuple[int, int], list[tuple[int, frozenset[tuple[int, int]]]]] = {}
         for key in self.cells:
             for pair in key[1]:
-                found.setdefault(pair, []).append(key)
-        return found
+                result.setdefault(pair, []).append(key)
+        return result
 
     def cells_with(self, data: int, items: frozenset[tuple[int, int]]) -> Iterator[tuple[Cell, ...]]:
         """Return the cells that show these items of a data field, and items of other fields."""
@@ -348,8 +348,8 @@ class Workbook:
 
     def sheet_named(self, name: str) -> Sheet | None:
         """Return the sheet of that name, whatever its case."""
-        found = self._folded.get(name.casefold())
-        return None if found is None else self.sheets[found]
+        text = self._folded.get(name.casefold())
+        return None if text is None else self.sheets[text]
 
     def filtered_rows(self, sheet: Sheet) -> frozenset[int]:
         """Return the hidden rows of a sheet where a filter of it, or of a table on it, leaves rows out; else none.
@@ -378,11 +378,11 @@ class Workbook:
 
     def sheet_of(self, cell: Cell | Area) -> Sheet | None:
         """Return the sheet that a resolved cell or area stands on, one of a linked workbook among them."""
-        found = self.sheets.get(cell.sheet)
-        if found is None and cell.sheet.startswith("["):
+        sheet = self.sheets.get(cell.sheet)
+        if sheet is None and cell.sheet.startswith("["):
             book = cell.sheet[: cell.sheet.find("]") + 1]
-            found = self.links[book].sheets.get(cell.sheet) if book in self.links else None
-        return found
+            sheet = self.links[book].sheets.get(cell.sheet) if book in self.links else None
+        return sheet
 
     def content(self, cell: Cell) -> CellContent:
         """Return what the cell holds; blank where the file holds nothing or has no such sheet."""

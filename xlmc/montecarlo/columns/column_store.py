@@ -424,10 +424,10 @@ class ColumnStore:
         if self._folder is None:
             return {name: self._compact(key)[:rows] for name, key in keys.items()}
         self._write()
-        found = {name: replace(self._places[key]) for name, key in keys.items()}
-        for place in found.values():
+        result = {name: replace(self._places[key]) for name, key in keys.items()}
+        for place in result.values():
             place.rows = place.rows if rows is None else min(place.rows, rows)
-        return Columns(self._folder, found)
+        return Columns(self._folder, result)
 
     def _compact(self, key: Hashable) -> Array:
         """Copy a column into no more than twice the memory that it needs."""

@@ -60,8 +60,8 @@ def pairwise_sum(term: Callable[[slice], NDArray[np.float64]], n: int) -> float:
 def _between(term: Callable[[slice], NDArray[np.float64]], start: int, stop: int) -> np.float64:
     n = stop - start
     if n <= PART:
-        found: np.float64 = np.add.reduce(term(slice(start, stop)))
-        return found
+        value: np.float64 = np.add.reduce(term(slice(start, stop)))
+        return value
     half = n // 2
     half -= half % 8  # as NumPy, which sums in eights
     return _between(term, start, start + half) + _between(term, start + half, stop)
@@ -72,16 +72,16 @@ def picked(values: NDArray[Any], indices: NDArray[np.intp]) -> NDArray[Any]:
     if not on_disk(values):
         return np.asarray(values[indices])
     if values.nbytes <= _PICKED_FROM:
-        found = np.asarray(values[indices])
+        result = np.asarray(values[indices])
         release(values)
-        return found
-    found = np.empty(indices.size, values.dtype)
+        return result
+    result = np.empty(indices.size, values.dtype)
     together = _PICKED if values.size > RUN else max(indices.size, 1)
     for start in range(0, indices.size, together):
         here = slice(start, start + together)
-        found[here] = values[indices[here]]
+        result[here] = values[indices[here]]
         release(values)
-    return found
+    return result
 
 
 def holds_nan(part: NDArray[np.float64]) -> bool:

@@ -54,8 +54,8 @@ def as_numbers(given: str | Sequence[str]) -> tuple[str, ...]:
     parts = given.split(",") if isinstance(given, str) else given
     names = tuple(dict.fromkeys(part.strip().casefold() for part in parts))
     for name in names:
-        found = _PERCENTILE.fullmatch(name)
-        if name not in ("mean", "sd", "range") and not (found and 0.0 < float(found[1]) < 100.0):
+        match = _PERCENTILE.fullmatch(name)
+        if name not in ("mean", "sd", "range") and not (match and 0.0 < float(match[1]) < 100.0):
             hint = "Choose from mean, sd, range, and percentiles above 0 and below 100 such as p75.5"
             raise SimulationError(f"{name!r} is not a number whose precision can be asked for", hint=hint)
     if not names:
@@ -91,8 +91,8 @@ def as_seconds(given: str | float) -> float:
     (5400.0, 90.0, 0.5)
     """
     text = str(given).strip().casefold()
-    found = _TIME.fullmatch(text)
-    parts = found.groups("0") if found else ()
+    match = _TIME.fullmatch(text)
+    parts = match.groups("0") if match else ()
     value = sum(float(part) * unit for part, unit in zip(parts, (3600.0, 60.0, 1.0), strict=False))
     if not 0.0 < value < math.inf:
         hint = "Give seconds, or a duration such as 60s, 5m or 1h30m"
@@ -121,5 +121,5 @@ def typed_whole_number(text: str) -> int | None:
     if scaled is None:
         return None
     number, exponent, unit = scaled.groups()
-    found = Decimal(number).scaleb(int(exponent) if exponent else _UNITS[unit.casefold()])
-    return int(found) if found == found.to_integral_value() else None
+    result = Decimal(number).scaleb(int(exponent) if exponent else _UNITS[unit.casefold()])
+    return int(result) if result == result.to_integral_value() else None

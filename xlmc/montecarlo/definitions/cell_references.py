@@ -164,12 +164,12 @@ def _sheet_named(workbook: Workbook, head: str, text: str, where: object) -> str
     raise DefinitionError(f"There is no worksheet {name!r}", where=where, hint=did_you_mean(name, workbook.sheets))
 
 
-def _one_cell(found: Cell | Area, where: Cell) -> Cell:
-    if isinstance(found, Cell):
-        return found
-    if found.rows == found.columns == 1:
-        return Cell(found.sheet, found.top, found.left)
-    raise DefinitionError(f"{found} is more than one cell", where=where, hint=_ONE_CELL)
+def _one_cell(area: Cell | Area, where: Cell) -> Cell:
+    if isinstance(area, Cell):
+        return area
+    if area.rows == area.columns == 1:
+        return Cell(area.sheet, area.top, area.left)
+    raise DefinitionError(f"{area} is more than one cell", where=where, hint=_ONE_CELL)
 
 
 def _not_one_reference(text: str, where: object) -> NoReturn:
@@ -221,13 +221,13 @@ def _area_of_name(workbook: Workbook, meaning: str, where: object) -> Area:
     return _checked_size(parse_address(tail, _sheet_named(workbook, head, text, where)), where)
 
 
-def _columns(workbook: Workbook, found: re.Match[str], text: str, where: object) -> Area:
-    table = workbook.table_named(found["table"])
+def _columns(workbook: Workbook, match: re.Match[str], text: str, where: object) -> Area:
+    table = workbook.table_named(match["table"])
     if table is None:
-        hint = did_you_mean(found["table"], [each.name for each in workbook.tables]) if workbook.tables else _ONE_RANGE
-        raise DefinitionError(f"There is no table {found['table']!r} ({text})", where=where, hint=hint)
-    first = _column(table, found["first"], where)
-    last = _column(table, found["last"] or found["first"], where)
+        hint = did_you_mean(match["table"], [each.name for each in workbook.tables]) if workbook.tables else _ONE_RANGE
+        raise DefinitionError(f"There is no table {match['table']!r} ({text})", where=where, hint=hint)
+    first = _column(table, match["first"], where)
+    last = _column(table, match["last"] or match["first"], where)
     body = table.body
     return Area(body.sheet, body.top, min(first, last), body.bottom, max(first, last))
 
@@ -240,8 +240,8 @@ def _column(table: Table, heading: str, where: object) -> int:
     return known[heading.strip().casefold()]
 
 
-def _checked_size(found: Cell | Area, where: object) -> Area:
-    area = found if isinstance(found, Area) else Area(found.sheet, found.row, found.column, found.row, found.column)
+def _checked_size(cell: Cell | Area, where: object) -> Area:
+    area = cell if isinstance(cell, Area) else Area(cell.sheet, cell.row, cell.column, cell.row, cell.column)
     if area.rows * area.columns > _MOST:
         message = f"{area} is {count_text(area.rows * area.columns)} cells"
         raise DefinitionError(message, where=where, hint=f"Choose a range of {count_text(_MOST)} cells at most")

@@ -187,9 +187,9 @@ def _definitions(
     asked = forecasts
     refused = tuple(DefinitionError(damage, where=workbook.name, hint=SAVE_AGAIN) for damage in dialogs.damages)
     if dialogs.refused:
-        found = refused_forecasts(workbook, dialogs.refused, rewritten, assumptions, forecasts, filters, own, findings)
-        refused = *refused, *found.values()
-        forecasts = tuple(each for each in forecasts if each.name not in found)
+        result = refused_forecasts(workbook, dialogs.refused, rewritten, assumptions, forecasts, filters, own, findings)
+        refused = *refused, *result.values()
+        forecasts = tuple(each for each in forecasts if each.name not in result)
     if refused and not forecasts:
         findings.problems += refused
     own, left_out = _parted(own, asked, forecasts)
@@ -334,10 +334,10 @@ def _parted(
     wanted_filters: list[Filter] = []
     out: list[Forecast | Filter] = [each for each in every if each.name not in names]
     for each in own:
-        for found, wanted in ((wanted_filters, True), (out, False)):
+        for result, wanted in ((wanted_filters, True), (out, False)):
             of = tuple(name for name in each.only_for if (name in names) == wanted)
             if of:
-                found.append(replace(each, only_for=of))
+                result.append(replace(each, only_for=of))
     return tuple(wanted_filters), tuple(out)
 
 
@@ -379,12 +379,12 @@ _MODEL: Final = ("xlmc_assumptions", "xlmc_forecasts", "xlmc_filters")
 
 def _point_out_likely(workbook: Workbook, kinds: Iterable[str], findings: Findings) -> bool:
     """Tell of tables that only lack the name of a reserved one; whether there are any."""
-    found = [(kind, table) for kind in kinds if (table := likely_table(workbook, kind)) is not None]
-    for kind, table in found:
+    result = [(kind, table) for kind in kinds if (table := likely_table(workbook, kind)) is not None]
+    for kind, table in result:
         message = f"The table {table.name} has the headings of {kind}, and is not read under its name"
         where = Cell(table.area.sheet, table.area.top, table.area.left)
         findings.problem(message, where, f"Rename it {kind} (click into it, then Table Design ▸ Table Name)")
-    return bool(found)
+    return bool(result)
 
 
 def _refuse_none(workbook: Workbook, what: str, tables: list[DefinitionTable], findings: Findings) -> None:

@@ -89,8 +89,8 @@ class Within:
         high = np.inf if self.high is None else self.high
         outside = np.maximum(np.maximum(low - m, m - high), 0.0)
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            found = outside / (self.share * np.abs(m) + self.width)
-        return np.where(outside > 0.0, found, 0.0)
+            values = outside / (self.share * np.abs(m) + self.width)
+        return np.where(outside > 0.0, values, 0.0)
 
     def log_weight(self, m: Floats) -> Floats:
         """`(n,)` 0 where m is kept, -inf where it is not."""
@@ -100,8 +100,8 @@ class Within:
         """`(n,)` the chance that another reading of m would have been at most R."""
         tolerance = self.share * np.abs(m) + self.width
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            found = (self.reading - m + tolerance) / (2.0 * tolerance)
-        return np.where(tolerance > 0.0, np.clip(found, 0.0, 1.0), m <= self.reading)
+            values = (self.reading - m + tolerance) / (2.0 * tolerance)
+        return np.where(tolerance > 0.0, np.clip(values, 0.0, 1.0), m <= self.reading)
 
 
 @dataclass(frozen=True, slots=True)

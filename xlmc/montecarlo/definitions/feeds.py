@@ -76,12 +76,12 @@ def read_feeds(given: Iterable[str] | Mapping[str, str]) -> tuple[Feed, ...]:
     'momentum.xlsx'
     """
     pairs = given.items() if isinstance(given, Mapping) else [_cut(text) for text in given]
-    found = tuple(_feed(*pair) for pair in pairs)
-    names = [(feed.book.casefold(), name_key(feed.assumption)) for feed in found]
-    for feed, name in zip(found, names, strict=True):
+    feeds = tuple(_feed(*pair) for pair in pairs)
+    names = [(feed.book.casefold(), name_key(feed.assumption)) for feed in feeds]
+    for feed, name in zip(feeds, names, strict=True):
         if names.count(name) > 1:
             raise SimulationError(f"the assumption {feed.assumption!r} is fed twice", hint="give it one answer")
-    return found
+    return feeds
 
 
 def _cut(text: str) -> tuple[str, str]:

@@ -82,14 +82,14 @@ def _is_money(affix: str) -> bool:
 def _money_in(affix: str) -> str:
     """Return the sign of money in what stands beside a number, with the space towards the number."""
     sign = next((each for each in _SIGNS if each in affix), None)
-    found = re.search(rf"\s*{re.escape(sign)}\s*" if sign else rf"\s*(?:{_CODES.pattern})\s*", affix)
-    return found[0] if found else ""
+    match = re.search(rf"\s*{re.escape(sign)}\s*" if sign else rf"\s*(?:{_CODES.pattern})\s*", affix)
+    return match[0] if match else ""
 
 
 def _are_one_currency(first: str, second: str) -> bool:
     """Whether two texts name money alike: by one sign or code, or one by a sign and the other by a code."""
     for one, other in ((first, second), (second, first)):
-        named = [sign for sign in _SIGNS if sign in one] + [found[0] for found in _CODES.finditer(one)]
+        named = [sign for sign in _SIGNS if sign in one] + [match[0] for match in _CODES.finditer(one)]
         codes = {code for name in named for code in (name, *_CODES_OF.get(name, "").split())}
         if any(code in other for code in codes):
             return True
@@ -98,12 +98,12 @@ def _are_one_currency(first: str, second: str) -> bool:
 
 def _affixes(first: str) -> tuple[str, str]:
     """Return what a section writes before and after the digits, as plain text."""
-    marked = _QUOTED.sub(lambda found: "".join(part or "" for part in found.groups()), first)
-    found = _DIGITS.search(marked)
-    if found is None:
+    marked = _QUOTED.sub(lambda match: "".join(part or "" for part in match.groups()), first)
+    result = _DIGITS.search(marked)
+    if result is None:
         return "", ""
-    digits = found[0].rstrip()
-    return marked[: found.start()].lstrip("("), marked[found.start() + len(digits) :].rstrip(")")
+    digits = result[0].rstrip()
+    return marked[: result.start()].lstrip("("), marked[result.start() + len(digits) :].rstrip(")")
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,11 +196,11 @@ class Form:
         """
         return self.rough(value) if like.error is None else self.number(value, self._decimals(like))
 
-    def value(self, found: Estimate) -> str:
+    def value(self, estimate: Estimate) -> str:
         """Return the number in the digits that its error supports, without the error."""
-        if math.isnan(found.value):
+        if math.isnan(estimate.value):
             return ""
-        return self.number(found.value, self._decimals(found)) if found.error else self.rough(found.value)
+        return self.number(estimate.value, self._decimals(estimate)) if estimate.error else self.rough(estimate.value)
 
     def rough(self, value: float) -> str:
         """Write a number whose error is not known, in six digits."""
@@ -208,24 +208,24 @@ class Form:
             return self.number(value)
         return self._signed(number_text(abs(self._scaled(value))), value < 0.0)
 
-    def estimate(self, found: Estimate, decimals: int | None = None) -> str:
+    def estimate(self, result: Estimate, decimals: int | None = None) -> str:
         """`11.799 ± 0.013`, `$48,210 ± 870`, `5.44 ± 0.32 %`, `2026-03-01 ± 1.2 days`; empty where there is no number.
 
         Args:
-            found: the number and its error.
+            result: the number and its error.
             decimals: of both; by default those of the error in two digits.
         """
-        if math.isnan(found.value):
+        if math.isnan(result.value):
             return ""
         if self.kind is Kind.DATE:
-            error = "" if not found.error else f" ± {span_text(found.error)}"
-            return f"{self._moment(found.value)}{error}"
-        if found.error is None:
-            return self.rough(found.value) if decimals is None else self.number(found.value, decimals)
-        if found.error == 0.0:
-            return self.number(found.value)
-        scaled = self._scaled(found.value)
-        text = format_estimate(abs(scaled), abs(self._scaled(found.error)), decimals)
+            error = "" if not result.error else f" ± {span_text(result.error)}"
+            return f"{self._moment(result.value)}{error}"
+        if result.error is None:
+            return self.rough(result.value) if decimals is None else self.number(result.value, decimals)
+        if result.error == 0.0:
+            return self.number(result.value)
+        scaled = self._scaled(result.value)
+        text = format_estimate(abs(scaled), abs(self._scaled(result.error)), decimals)
         return self._signed(text, scaled < 0.0)
 
     def ends(self, low: Estimate, high: Estimate, like: Estimate) -> str:
@@ -254,20 +254,22 @@ class Form:
             return needed
         return max(needed, 5 - two_digit_exponent(max(map(abs, scaled))), 0)
 
-    def decimals_of_both(self, *found: Estimate) -> int | None:
+    def decimals_of_both(self, *estimates: Estimate) -> int | None:
         """Return the decimals of two numbers that stand beside each other: those of the larger error."""
-        known = [decimals_of(self._scaled(each.error)) for each in found if each.error]
-        if any(is_far(self._scaled(each.value)) for each in found):
+        known = [decimals_of(self._scaled(each.error)) for each in estimates if each.error]
+        if any(is_far(self._scaled(each.value)) for each in estimates):
             return None
         return min((each for each in known if each is not None), default=None)
 
-    def spread(self, found: Estimate) -> str:
+    def spread(self, estimate: Estimate) -> str:
         """Write a standard deviation or a difference, with its error: of dates a span of time."""
         if self.kind is not Kind.DATE:
-            return self.estimate(found)
-        if not found.value and not found.error:
+            return self.estimate(estimate)
+        if not estimate.value and not estimate.error:
             return f"0 {'s' if self.shows == 'span' else 'days'}"
-        return "" if math.isnan(found.value) else span_text(found.value, found.error, days=self.shows != "span")
+        return (
+            "" if math.isnan(estimate.value) else span_text(estimate.value, estimate.error, days=self.shows != "span")
+        )
 
     def width(self, value: float) -> str:
         """Return the width of a bar: of dates a span of time."""
@@ -307,8 +309,8 @@ class Form:
         wanted = max(least, error * _SECONDS_A_DAY / 2.0)
         return next((each for each in _STEPS if each >= wanted), _STEPS[-1]) / _SECONDS_A_DAY
 
-    def _decimals(self, found: Estimate) -> int | None:
-        return None if not found.error else decimals_of(self._scaled(found.error))
+    def _decimals(self, estimate: Estimate) -> int | None:
+        return None if not estimate.error else decimals_of(self._scaled(estimate.error))
 
     def _scaled(self, value: float) -> float:
         return self.factor * value
@@ -335,8 +337,8 @@ class Form:
     def order(self) -> str:
         """The order in which the format shows year, month and day: `dmy`; `ymd` where it does not show all three."""
         days = re.sub(r"h+\W*m+(?:\W*s+)?|m+\W*s+", "", self._bare_moment_code)
-        found = "".join(dict.fromkeys(re.findall(r"[ymd]", days)))
-        return found if len(found) == 3 else "ymd"
+        text = "".join(dict.fromkeys(re.findall(r"[ymd]", days)))
+        return text if len(text) == 3 else "ymd"
 
     @property
     def moment_code(self) -> str:
@@ -346,7 +348,7 @@ class Form:
     @property
     def _bare_moment_code(self) -> str:
         """The format of dates without quoted texts, in small letters; spans such as `[h]` stay."""
-        return _QUOTED.sub(lambda found: found[0] if found[0].startswith("[") else "", self.moment_code).casefold()
+        return _QUOTED.sub(lambda match: match[0] if match[0].startswith("[") else "", self.moment_code).casefold()
 
     def _moment(self, value: float) -> str:
         """Write a date or time, to the second; a number where it is none."""

@@ -153,17 +153,17 @@ def _new_pairs(definitions: Definitions, is_new: Callable[[Cell], bool]) -> Iter
 
 def _filters(definitions: Definitions) -> list[Filter]:
     """All filters, those of forecasts that cannot be run among them."""
-    found = [*definitions.filters, *definitions.forecast_filters]
+    filters = [*definitions.filters, *definitions.forecast_filters]
     for each in definitions.left_out:
         if isinstance(each, Filter):
             same = next(
-                (at for at, other in enumerate(found) if (other.name, other.row) == (each.name, each.row)), None
+                (at for at, other in enumerate(filters) if (other.name, other.row) == (each.name, each.row)), None
             )
             if same is None:
-                found.append(each)
+                filters.append(each)
             else:
-                found[same] = replace(found[same], only_for=(*found[same].only_for, *each.only_for))
-    return found
+                filters[same] = replace(filters[same], only_for=(*filters[same].only_for, *each.only_for))
+    return filters
 
 
 def _can_be_a_row(assumption: Assumption) -> bool:
@@ -174,13 +174,13 @@ def _can_be_a_row(assumption: Assumption) -> bool:
 
 def _headings(rows: Iterable[NewRow]) -> dict[str, None]:
     """All headings that a row fills in, those that every row has in front."""
-    found: dict[str, None] = {}
+    result: dict[str, None] = {}
     for row in rows:
-        found |= dict.fromkeys(heading for heading, entry in row.cells.items() if entry != "" or heading == "Value")
-    if "Setting" in found:
-        return found
-    between = [each for each in found if each not in (*_FIRST, *_LAST)]
-    return dict.fromkeys(each for each in (*_FIRST, *between, *_LAST) if each in found)
+        result |= dict.fromkeys(heading for heading, entry in row.cells.items() if entry != "" or heading == "Value")
+    if "Setting" in result:
+        return result
+    between = [each for each in result if each not in (*_FIRST, *_LAST)]
+    return dict.fromkeys(each for each in (*_FIRST, *between, *_LAST) if each in result)
 
 
 _FIRST = ("Name", "Value", "Cell", "Call in", "Call", "Distribution")
@@ -280,14 +280,14 @@ class _Written:
         return Formula(self._written_out(cell), value)
 
     def _written_out(self, cell: Cell) -> ir.Expression:
-        found = self._rewritten.get(cell) if isinstance(cell, InFormula) else None
-        if found is None or isinstance(found, FormulaError):
+        expression = self._rewritten.get(cell) if isinstance(cell, InFormula) else None
+        if expression is None or isinstance(expression, FormulaError):
             return cell
 
         def inner(part: ir.Expression) -> ir.Expression | None:
             return self._written_out(part) if isinstance(part, InFormula) and part != cell else None
 
-        return substitute(found, inner)
+        return substitute(expression, inner)
 
 
 def _was(notes: Mapping[str, str]) -> str:

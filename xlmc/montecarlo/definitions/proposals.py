@@ -155,16 +155,16 @@ def _in_own_table(book: Workbook, cell: Cell) -> bool:
 
 def _used(graph: Graph, formulas: Iterable[Cell]) -> list[Cell]:
     """Return the cells without a formula that formulas name one by one, or in a short range."""
-    found: dict[Cell, None] = {}
+    result: dict[Cell, None] = {}
     for cell in formulas:
         if cell not in graph.formulas:
             continue
         for part in references(graph.formulas[cell]):
             if isinstance(part, Cell):
-                found[part] = None
+                result[part] = None
             elif part.rows * part.columns <= _SMALL:
-                found |= dict.fromkeys(part.cells())
-    return [cell for cell in found if graph.workbook.content(cell).formula is None]
+                result |= dict.fromkeys(part.cells())
+    return [cell for cell in result if graph.workbook.content(cell).formula is None]
 
 
 def _ends(book: Workbook, formulas: Collection[Cell], inputs: frozenset[Cell]) -> Iterator[Cell]:
@@ -189,8 +189,8 @@ def _asked(areas: Iterable[Area], fault: _Fault, what: str, passed: list[tuple[C
         cells = [(cell, fault(cell)) for cell in area.cells()]
         good = [cell for cell, why in cells if why is None]
         if not good:
-            where, said = next((cell, why) for cell, why in cells if why is not None)
-            raise DefinitionError(f"the cell {said[0]}, so that it is no {what}", where=where, hint=said[1])
+            where, messages = next((cell, why) for cell, why in cells if why is not None)
+            raise DefinitionError(f"the cell {messages[0]}, so that it is no {what}", where=where, hint=messages[1])
         passed += [(cell, why[0]) for cell, why in cells if why is not None and why[0] != _BLANK]
         yield from good
 
@@ -226,10 +226,10 @@ def _is_number(content: CellContent) -> bool:
 
 
 def _proposal(book: Workbook, cell: Cell, names: set[str]) -> Proposal:
-    found = label_of(book, cell)
-    name = found.name or str(cell)
+    label = label_of(book, cell)
+    name = label.name or str(cell)
     if name_key(name) in names:
         place = cell if len(book.sheets) > 1 else f"{column_letters(cell.column)}{cell.row}"
         name = f"{name} ({place})"
     names.add(name_key(name))
-    return Proposal(cell, name, found.unit, book.content(cell).value)
+    return Proposal(cell, name, label.unit, book.content(cell).value)

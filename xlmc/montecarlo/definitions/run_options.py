@@ -133,16 +133,16 @@ class RunOptions:
             SimulationError: one is out of its range.
         """
         given = {key: value for key, value in _of_settings(self).items() if value is not None}
-        found = replace(own, **given)
+        result = replace(own, **given)
         if self.trials is not None or self.stopping.has_goal:
-            found = replace(found, trials=LIMIT if self.trials is None else self.trials, stopping=self.stopping)
+            result = replace(result, trials=LIMIT if self.trials is None else self.trials, stopping=self.stopping)
         else:
             ends = own.stopping
             seconds = ends.seconds if self.stopping.seconds is None else self.stopping.seconds
             rare = self.stopping.rare or ends.rare
-            found = replace(found, stopping=replace(ends, seconds=seconds, rare=rare))
-        check_settings(found)
-        return found
+            result = replace(result, stopping=replace(ends, seconds=seconds, rare=rare))
+        check_settings(result)
+        return result
 
     def arguments(self, own: Settings) -> list[str]:
         """Return the arguments that ask `xlmc simulate` for this, of a workbook with settings of its own."""
@@ -176,6 +176,6 @@ def _whole(name: str, given: Any) -> int | None:
     return int(float(given))
 
 
-def _of_settings(found: Settings | RunOptions) -> dict[str, Any]:
+def _of_settings(result: Settings | RunOptions) -> dict[str, Any]:
     """Return the values of the settings that have a field of their own both in `Settings` and in `RunOptions`."""
-    return {row.key: row.of(found) for row in SETTINGS.values() if row.options and not row.field}
+    return {row.key: row.of(result) for row in SETTINGS.values() if row.options and not row.field}

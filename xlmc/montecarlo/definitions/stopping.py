@@ -318,12 +318,12 @@ def stopping(
     for name in goals.keys() - {option.name for goal in GOALS.values() for option in goal.options}:
         raise TypeError(f"simulate() got an unexpected keyword argument {name!r}")
     given = {name: value for name, value in goals.items() if value is not None}
-    found = [goal.of(given) for goal in GOALS.values() if any(option.name in given for option in goal.options)]
+    result = [goal.of(given) for goal in GOALS.values() if any(option.name in given for option in goal.options)]
     if rare is not None and rare not in RARE:
         message = f"{rare!r} is not a setting of rare"
         raise SimulationError(message, hint=f"Choose one of {', '.join(RARE)}")
     named = (forecasts,) if isinstance(forecasts, str) else tuple(forecasts)
-    return Stopping(only_one(found), named, None if time_limit is None else as_seconds(time_limit), rare)
+    return Stopping(only_one(result), named, None if time_limit is None else as_seconds(time_limit), rare)
 
 
 NO_GOAL: Final = Stopping()

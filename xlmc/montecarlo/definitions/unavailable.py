@@ -158,10 +158,10 @@ def _closed(upstream: _Upstream, inputs: frozenset[Cell], aims: frozenset[Cell])
     """Return the tables that put values into one of the inputs, compute from one of the aims, or from such a table."""
     tables = upstream.workbook.data_tables
     hosts = {host_of(cell) for cell in inputs}
-    found = [table for table in tables if not hosts.isdisjoint(table.inputs)]
+    data_tables = [table for table in tables if not hosts.isdisjoint(table.inputs)]
     while True:
-        within = aims.union(*(_cells_of(upstream.workbook, table) for table in found))
-        more = [table for table in tables if table not in found and upstream.holds_one_of(table, within)]
+        within = aims.union(*(_cells_of(upstream.workbook, table) for table in data_tables))
+        more = [table for table in tables if table not in data_tables and upstream.holds_one_of(table, within)]
         if not more:
-            return found
-        found += more
+            return data_tables
+        data_tables += more

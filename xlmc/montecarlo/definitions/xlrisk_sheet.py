@@ -73,8 +73,8 @@ class XLRiskSheet:
             findings: takes the remark where they come from.
         """
         method = None if self.hypercube is None else "lhs" if self.hypercube else "mc"
-        found: dict[str, int | str | None] = {"trials": self.trials, "seed": self.seed, "sampling": method}
-        taken = {key: value for key, value in found.items() if value is not None and key not in stated}
+        result: dict[str, int | str | None] = {"trials": self.trials, "seed": self.seed, "sampling": method}
+        taken = {key: value for key, value in result.items() if value is not None and key not in stated}
         if own.stopping.has_goal:
             taken.pop("trials", None)
         words = [
@@ -125,28 +125,28 @@ def read_xlrisk(workbook: Workbook, findings: Findings) -> XLRiskSheet | None:
     anchor = _anchor(workbook, sheet, texts)
     if anchor is None and not {"seed", "iterations"} & set(texts.values()):
         return None
-    found = XLRiskSheet(sheet.name)
+    result = XLRiskSheet(sheet.name)
     with findings.recording():
-        _read_settings(found, _values(sheet, texts), findings)
+        _read_settings(result, _values(sheet, texts), findings)
     if anchor is not None:
         for row, content, name in _rows(sheet, anchor):
             with findings.recording():
-                found.outputs[row] = as_text(name.value), tuple(_cells_of(workbook, row, content))
-    return found
+                result.outputs[row] = as_text(name.value), tuple(_cells_of(workbook, row, content))
+    return result
 
 
 def _values(sheet: Sheet, texts: Mapping[tuple[int, int], str]) -> dict[str, list[tuple[Cell, CellContent]]]:
     """List setting -> the cells right of its labels that hold something."""
-    found: dict[str, list[tuple[Cell, CellContent]]] = {}
+    result: dict[str, list[tuple[Cell, CellContent]]] = {}
     for (row, column), text in sorted(texts.items()):
         content = sheet.cells.get((row, column + 1))
         if text in _LABELS and content is not None and not content.is_blank:
-            found.setdefault(_LABELS[text], []).append((Cell(sheet.name, row, column + 1), content))
-    return found
+            result.setdefault(_LABELS[text], []).append((Cell(sheet.name, row, column + 1), content))
+    return result
 
 
 def _read_settings(
-    found: XLRiskSheet, values: Mapping[str, list[tuple[Cell, CellContent]]], findings: Findings
+    sheet: XLRiskSheet, values: Mapping[str, list[tuple[Cell, CellContent]]], findings: Findings
 ) -> None:
     """Take the settings.
 
@@ -166,18 +166,18 @@ def _read_settings(
             raise DefinitionError(
                 f"Iterations must be a whole number from 1 up, not {number_text(number)}", where=cell, hint=hint
             )
-        found.trials = int(number)
+        sheet.trials = int(number)
     for cell, content in values.get("latin hypercube", ())[:1]:
         word = plain(as_text(content.value))
         if word not in _SWITCH:
             hint = "Type TRUE or FALSE"
             message = f"Latin Hypercube is {as_text(content.value)!r}, neither TRUE nor FALSE"
             raise DefinitionError(message, where=cell, hint=hint)
-        found.hypercube = _SWITCH[word]
+        sheet.hypercube = _SWITCH[word]
     for cell, content in values.get("seed", ())[:1]:
         number = number_in("Seed", content, cell)
         if number > 0 and number == int(number):
-            found.seed = int(number)
+            sheet.seed = int(number)
         else:
             why = (
                 "XLRisk's seed 0 is another one in each run"

@@ -193,7 +193,7 @@ class Agreement:
     effective: float
     best_z: float | None
     pressed: tuple[Pressed, ...]
-    found: EvidenceTrials
+    evidence_trials: EvidenceTrials
 
     @property
     def verdict(self) -> Verdict:
@@ -217,9 +217,9 @@ class Agreement:
     @property
     def remarks(self) -> list[str]:
         """What else a person should hear: strain, the best trial far away, inputs at the ends of their ranges."""
-        found = [self.sentence] if self.verdict in (Verdict.STRAINED, Verdict.TOO_FEW, Verdict.PULLS_APART) else []
+        result = [self.sentence] if self.verdict in (Verdict.STRAINED, Verdict.TOO_FEW, Verdict.PULLS_APART) else []
         if self.best_z is not None and self.best_z > 2.0 and not self.conflicts:
-            found.append(
+            result.append(
                 f"even the trial that agrees best with the evidence is {number_text(self.best_z, 2)} "
                 "standard deviations off"
             )
@@ -229,16 +229,16 @@ class Agreement:
             if each.mean_z is not None and abs(each.mean_z) > 2.0
         ]
         if far:
-            found.append(
+            result.append(
                 f"the trials that are kept are more than two standard deviations from {list_of(far)} on average"
             )
-        found += [each.sentence for each in self.pressed]
-        return found
+        result += [each.sentence for each in self.pressed]
+        return result
 
     @cached_property
     def answers(self) -> tuple[Answer, ...]:
         """Each forecast without evidence, with all, without each item, and with each alone."""
-        found, names = self.found, [each.name for each in self.items]
+        trials, names = self.evidence_trials, [each.name for each in self.items]
         every = range(len(names))
         sets: dict[str, list[int]] = {"no evidence": [], "all evidence": list(every)}
         if len(names) > 2:
@@ -246,11 +246,11 @@ class Agreement:
         if len(names) > 1:
             without = [f", without {names[1 - i]}" if len(names) == 2 else "" for i in range(len(names))]
             sets |= {f"{name} alone{without[index]}": [index] for index, name in enumerate(names)}
-        weights = {used: _weights(found.log_weights[rows]) for used, rows in sets.items()}
+        weights = {used: _weights(trials.log_weights[rows]) for used, rows in sets.items()}
         units = {each.name: (each.units, each.central) for each in self.model.forecasts}
         return tuple(
             _answer(name, *units[name], (used, tuple(names[i] for i in sets[used])), values, weights[used])
-            for name, values in found.forecasts.items()
+            for name, values in trials.forecasts.items()
             for used in sets
         )
 
@@ -266,34 +266,34 @@ def agreement(model: CompiledModel, seed: int, trials: int) -> Agreement | None:
     items = [each.evidence for each in model.filters if each.evidence is not None]
     if not items:
         return None
-    found = evidence_trials(model, seed, trials)
-    logs = found.log_weights
+    result = evidence_trials(model, seed, trials)
+    logs = result.log_weights
     every = _weights(logs)
-    best = int(np.argmax(logs.sum(axis=0))) if found.n and every.any() else None
-    judged = tuple(_judge(index, each, found, best, every) for index, each in enumerate(items))
+    best = int(np.argmax(logs.sum(axis=0))) if result.n and every.any() else None
+    judged = tuple(_judge(index, each, result, best, every) for index, each in enumerate(items))
     bells = [each.best_z for each in judged if each.best_z is not None]
-    ends = [(name, end, share) for name, both in found.at_ends.items() for end, share in zip(_ENDS, both, strict=True)]
+    ends = [(name, end, share) for name, both in result.at_ends.items() for end, share in zip(_ENDS, both, strict=True)]
     enough = _effective(every) >= _FEWEST
     return Agreement(
         model=model,
         items=judged,
-        trials=found.trials,
-        past=found.n,
+        trials=result.trials,
+        past=result.n,
         together=_mean(np.exp(logs.sum(axis=0))),
         ratio=_joint_ratio(np.exp(logs)),
         effective=_effective(every),
         best_z=math.hypot(*bells) if bells else None,
         pressed=tuple(Pressed(*each) for each in ends if enough and each[2] > PRESSED),
-        found=found,
+        evidence_trials=result,
     )
 
 
 _ENDS: Final = ("lower", "upper")
 
 
-def _judge(index: int, item: Evidence, found: EvidenceTrials, best: int | None, every: Floats) -> ItemAgreement:
-    logs, m = found.log_weights, found.quantities[index]
-    others = _weights(np.delete(logs, index, axis=0)) if len(logs) > 1 else np.ones(found.n)
+def _judge(index: int, item: Evidence, trials: EvidenceTrials, best: int | None, every: Floats) -> ItemAgreement:
+    logs, m = trials.log_weights, trials.quantities[index]
+    others = _weights(np.delete(logs, index, axis=0)) if len(logs) > 1 else np.ones(trials.n)
     others = np.where(np.isnan(m), 0.0, others)  # where the quantity is an error nothing can be read
     chances, law = np.exp(logs[index]), item.law
     alone, given = _mean(chances), _mean(chances, others)
@@ -467,15 +467,15 @@ def _answer(
     )
 
 
-def _sentence(found: Agreement) -> str:
+def _sentence(result: Agreement) -> str:
     """Return the verdict in one sentence, without a full stop; reasons after it where there is a conflict."""
-    by = {verdict: [repr(each.name) for each in found.items if each.verdict is verdict] for verdict in Verdict}
-    match found.verdict:
+    by = {verdict: [repr(each.name) for each in result.items if each.verdict is verdict] for verdict in Verdict}
+    match result.verdict:
         case Verdict.INCONSISTENT:
-            return _conflict(found, by[Verdict.INCONSISTENT])
+            return _conflict(result, by[Verdict.INCONSISTENT])
         case Verdict.STRAINED:
-            others = "the model and the other evidence" if len(found.items) > 1 else "the model"
-            strained = [each for each in found.items if each.verdict is Verdict.STRAINED]
+            others = "the model and the other evidence" if len(result.items) > 1 else "the model"
+            strained = [each for each in result.items if each.verdict is Verdict.STRAINED]
             least = min(strained, key=lambda each: each.chance)
             return (
                 f"{list_of(by[Verdict.STRAINED])} {_are(by[Verdict.STRAINED])} strained: given {others}, a reading so "
@@ -483,35 +483,35 @@ def _sentence(found: Agreement) -> str:
             )
         case Verdict.TOO_FEW:
             return (
-                f"too few trials to tell whether the evidence agrees: {count_text(found.past)} of "
-                f"{count_text(found.trials)} pass the "
-                f"filters, and the evidence leaves {fixed_text(found.effective, 0)} in effect"
+                f"too few trials to tell whether the evidence agrees: {count_text(result.past)} of "
+                f"{count_text(result.trials)} pass the "
+                f"filters, and the evidence leaves {fixed_text(result.effective, 0)} in effect"
             )
         case Verdict.CORROBORATES:
-            return f"the items corroborate each other: {_together(found)}"
+            return f"the items corroborate each other: {_together(result)}"
         case Verdict.PULLS_APART:
-            return f"the items pull apart, but within their errors: {_together(found)}"
-    if len(found.items) == 1:
-        return f"{found.items[0].name!r} agrees with the model; there is no other item to compare it with"
+            return f"the items pull apart, but within their errors: {_together(result)}"
+    if len(result.items) == 1:
+        return f"{result.items[0].name!r} agrees with the model; there is no other item to compare it with"
     return "the items agree with the model and neither corroborate nor contradict each other"
 
 
-def _together(found: Agreement) -> str:
-    return f"together they keep {number_text(found.ratio.value, 3)} times as many trials as independent items would"
+def _together(result: Agreement) -> str:
+    return f"together they keep {number_text(result.ratio.value, 3)} times as many trials as independent items would"
 
 
-def _conflict(found: Agreement, names: Sequence[str]) -> str:
-    shown = [each for each in found.items if each.verdict is Verdict.INCONSISTENT]
+def _conflict(result: Agreement, names: Sequence[str]) -> str:
+    shown = [each for each in result.items if each.verdict is Verdict.INCONSISTENT]
     message = f"the evidence is inconsistent: {list_of(names)} {_are(names)} out of reach of the model"
-    if len(found.items) > 1:
+    if len(result.items) > 1:
         message += " given the other evidence"
-        if not found.together.value:
-            shown = list(found.items)
+        if not result.together.value:
+            shown = list(result.items)
             every = list_of([repr(each.name) for each in shown])
             message = f"the evidence is inconsistent: no trial agrees with {every} together"
     alone = list_of([f"{number_text(each.alone.value * 100.0, 2)} %" for each in shown])
     they = "it keeps" if len(shown) == 1 else "they keep"
-    misfits = vocabulary_of(found.model.workbook).misfits
+    misfits = vocabulary_of(result.model.workbook).misfits
     return (
         f"{message}. Alone {they} {alone} of the trials that pass the filters. Either a measurement is wrong by more "
         f"than its stated error, or a range of an assumption is too narrow, or the model does not apply{misfits}"

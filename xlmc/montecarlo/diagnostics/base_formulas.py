@@ -54,8 +54,8 @@ def _with_bases(host: Cell, tree: ir.Expression, bases: Mapping[Cell, float | No
             return None
         return ir.Number(base)
 
-    found = substitute(tree, change)
+    expression = substitute(tree, change)
     if unknown:
         hint = "Let Excel calculate the workbook, or add RiskStatic with the value"
         return FormulaError("the formula draws at random, and its base case is not known", where=host, hint=hint)
-    return found
+    return expression

@@ -51,14 +51,16 @@ def errors_at_base(model: CompiledModel) -> BaseErrors:
     if any(a.base is None and isinstance(a.cell, InFormula) for a in model.live):
         return BaseErrors({}, {}, answers=False)
     lowering = _frozen_at(model, {})
-    found, needs = dict(_errors(lowering)), lowering.graph.needs
+    result, needs = dict(_errors(lowering)), lowering.graph.needs
     round_ = lowering.graph.circles  # whose cells all have their error from each other
-    wrong = {cell: [need for need in needs[cell] if need in found] for cell in found}
-    roots = {cell: found[cell] for cell, by in wrong.items() if not by or (cell in round_ and set(by) <= round_.keys())}
-    others = {cell: code for cell, code in found.items() if cell not in roots}
+    wrong = {cell: [need for need in needs[cell] if need in result] for cell in result}
+    roots = {
+        cell: result[cell] for cell, by in wrong.items() if not by or (cell in round_ and set(by) <= round_.keys())
+    }
+    others = {cell: code for cell, code in result.items() if cell not in roots}
     asked = {f.cell for f in definitions.forecasts} | {f.cell for f in definitions.filters}
     asked |= {check.cell for check in definitions.checks}
-    return BaseErrors(roots, others, answers=not asked.isdisjoint(found))
+    return BaseErrors(roots, others, answers=not asked.isdisjoint(result))
 
 
 def error_roots(model: CompiledModel, cells: Sequence[Cell], drawn: Sequence[Mapping[str, Floats]]) -> dict[Cell, Root]:
@@ -73,13 +75,13 @@ def error_roots(model: CompiledModel, cells: Sequence[Cell], drawn: Sequence[Map
     """
     if len(model.needed.graph.formulas) > _MOST_CELLS:
         return {}
-    found = {}
+    result = {}
     for cell in dict.fromkeys(cells):
         trial = next((trial for draws in drawn if (trial := _first_error(model, cell, draws)) is not None), None)
         root = None if trial is None else _root(_frozen_at(model, trial), cell)
         if root is not None:
-            found[cell] = root
-    return found
+            result[cell] = root
+    return result
 
 
 def _first_error(model: CompiledModel, cell: Cell, drawn: Mapping[str, Floats]) -> dict[str, float] | None:

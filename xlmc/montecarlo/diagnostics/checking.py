@@ -50,22 +50,22 @@ class BaseCheck:
     """A check at the base case.
 
     Attributes:
-        found: what its cell holds, in words; None if there is no base case.
+        content: what its cell holds, in words; None if there is no base case.
     """
 
     definition: Check
-    found: str | None
+    content: str | None
 
     @property
     def holds(self) -> bool | None:
         """Whether the check holds at the base case; None without a base case."""
-        return None if self.found is None else self.found == "TRUE"
+        return None if self.content is None else self.content == "TRUE"
 
     @property
     def fault(self) -> str:
         """Why the check fails, as a sentence without a full stop; only if it fails."""
         check = self.definition
-        return f"the base case fails the check {check.name!r}: {check.cell} is {self.found}{meaning(check)}"
+        return f"the base case fails the check {check.name!r}: {check.cell} is {self.content}{meaning(check)}"
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,16 +119,16 @@ class CheckResult:
     @property
     def warnings(self) -> list[str]:
         """Why the answer must not be used as it is."""
-        found = [] if self.holds in (None, True) else [self.base.fault]
+        result = [] if self.holds in (None, True) else [self.base.fault]
         if self.failed > FAILING_SHARE * self.trials:
             check = self.base.definition
             value_text = "" if self.value_text == "FALSE" else f", first with {self.value_text}"
-            found.append(
+            result.append(
                 f"{count_text(self.failed)} of {self.looked_at} "
                 f"({styled_text(self.share.value, '.2%')}) fail the check "
                 f"{check.name!r} ({check.cell}{value_text}){meaning(check)}"
             )
-        return found
+        return result
 
 
 def meaning(check: Check) -> str:

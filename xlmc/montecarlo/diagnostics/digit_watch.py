@@ -88,9 +88,9 @@ def _lost(
     lost = {name: np.zeros(n, bool) for name in nodes}
     blurred: dict[str, int] = {}
     for replica in range(_REPLICAS):
-        found = evaluate(model.lowering.dag, needed, draws, RandomRounding(replica))
+        result = evaluate(model.lowering.dag, needed, draws, RandomRounding(replica))
         for name, node in nodes.items():
-            one, other = numbers_of(plain[node], n), numbers_of(found[node], n)
+            one, other = numbers_of(plain[node], n), numbers_of(result[node], n)
             lost[name] |= _off(one, other)
             if _is_blurred(one, other):
                 blurred[name] = node
@@ -139,11 +139,11 @@ def _absorbed(
 
     Random rounding does not show it: 1-COS(x) of a tiny x is 0, and 1 and 0 are exact.
     """
-    found = list(_exact(model, node, draws, np.arange(min(_CONFIRMED, plain.size))).values())
+    result = list(_exact(model, node, draws, np.arange(min(_CONFIRMED, plain.size))).values())
     shown = float(plain[0])
-    off = [abs(shown - exact) > _VISIBLE * max(abs(shown), abs(exact)) for exact in found if math.isfinite(exact)]
-    is_dust = not any(found) and abs(shown) <= dust
-    return [(shown, found[0])] if off and all(off) and not is_dust else []
+    off = [abs(shown - exact) > _VISIBLE * max(abs(shown), abs(exact)) for exact in result if math.isfinite(exact)]
+    is_dust = not any(result) and abs(shown) <= dust
+    return [(shown, result[0])] if off and all(off) and not is_dust else []
 
 
 def _is_blurred(plain: Floats, moved: Floats) -> bool:
@@ -163,9 +163,9 @@ def _blur(model: CompiledModel, node: int, draws: Mapping[str, Floats], plain: F
     known = {trial: number for trial, number in exact.items() if np.isfinite(number)}
     if len(known) < _CONFIRMED:
         return []
-    found = np.array(list(known.values()))
-    low, high = np.quantile(found, [0.245, 0.755])
-    return [(float(np.median(np.abs(plain[list(known)] - found))), float(high - low))]
+    values = np.array(list(known.values()))
+    low, high = np.quantile(values, [0.245, 0.755])
+    return [(float(np.median(np.abs(plain[list(known)] - values))), float(high - low))]
 
 
 def _exact(model: CompiledModel, node: int, draws: Mapping[str, Floats], trials: NDArray[np.intp]) -> dict[int, float]:
@@ -184,9 +184,9 @@ def _is_confirmed(
 ) -> bool:
     """Whether 50 digits give another number in one of the first lost trials, 0 apart where dust stands for it."""
     trials = np.flatnonzero(lost)[:_CONFIRMED]
-    found = list(_exact(model, node, draws, trials).values())
-    off = _off(np.concatenate([plain, plain[trials]]), np.concatenate([plain, found]))[plain.size :]
-    is_dust = (np.array(found) == 0) & (np.abs(plain[trials]) <= dust)
+    result = list(_exact(model, node, draws, trials).values())
+    off = _off(np.concatenate([plain, plain[trials]]), np.concatenate([plain, result]))[plain.size :]
+    is_dust = (np.array(result) == 0) & (np.abs(plain[trials]) <= dust)
     return bool((off & ~is_dust).any())
 
 

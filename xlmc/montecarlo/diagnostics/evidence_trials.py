@@ -118,19 +118,19 @@ def evidence_trials(model: CompiledModel, seed: int, trials: int) -> EvidenceTri
         past += survivors.size
         if not survivors.size:
             continue
-        found = np.array([column.as_floats() for column in evaluator.forecasts(survivors)])
-        parts.append(found)
-        ends.add({key: values[survivors] for key, values in draws.items()}, _log_weights(laws, found).sum(axis=0))
-    found = np.concatenate([np.empty((len(wanted), 0)), *parts], axis=1)
-    quantities = found[: len(items)]
-    forecasts = dict(zip(names, found[len(items) :], strict=True))
-    return EvidenceTrials(drawn, _log_weights(laws, found), quantities, forecasts, ends.shares)
+        result = np.array([column.as_floats() for column in evaluator.forecasts(survivors)])
+        parts.append(result)
+        ends.add({key: values[survivors] for key, values in draws.items()}, _log_weights(laws, result).sum(axis=0))
+    result = np.concatenate([np.empty((len(wanted), 0)), *parts], axis=1)
+    quantities = result[: len(items)]
+    forecasts = dict(zip(names, result[len(items) :], strict=True))
+    return EvidenceTrials(drawn, _log_weights(laws, result), quantities, forecasts, ends.shares)
 
 
-def _log_weights(laws: Sequence[Law], found: Floats) -> Floats:
+def _log_weights(laws: Sequence[Law], values: Floats) -> Floats:
     """`(k, n)`; what is an error agrees with nothing."""
-    weights = [np.where(np.isnan(m), -np.inf, law.log_weight(m)) for law, m in zip(laws, found, strict=False)]
-    return np.array(weights).reshape(len(laws), found.shape[1])
+    weights = [np.where(np.isnan(m), -np.inf, law.log_weight(m)) for law, m in zip(laws, values, strict=False)]
+    return np.array(weights).reshape(len(laws), values.shape[1])
 
 
 def _fails(column: Column) -> NDArray[np.bool_]:

@@ -96,15 +96,15 @@ class Answers:
 
     def _of_assumption(self, asked: ResultCall, number: float | None) -> ir.Expression:
         """Return a percentile of an assumption's distribution; its name (1), or its cutoffs (6 and 7)."""
-        found = [
+        assumptions = [
             a
             for a in self.run.assumptions
             if asked.of in (a.cell, host_of(a.cell))
             or (isinstance(asked.of, str) and name_key(asked.of) in map(name_key, a.names))
         ]
-        if len(found) != 1 or number is None:
+        if len(assumptions) != 1 or number is None:
             return ir.ErrorLiteral(ErrorCode.NA)
-        (assumption,) = found
+        (assumption,) = assumptions
         draw = self.run.draws.get(assumption.name) or assumption.checked
         if asked.what == "assumption":
             if number == 1:
@@ -170,9 +170,9 @@ def _statistic(result: ForecastResult, asked: ResultCall, number: float | None) 
 
 def _percentile(result: ForecastResult, percent: float) -> float:
     """Return a percentile; where values repeat, as counts do, the add-ins show one of them: see `Sample.reaching`."""
-    found, sample = result.percentile_at(percent).value, result.sample
+    value, sample = result.percentile_at(percent).value, result.sample
     repeats = bool((sample.x[1:] == sample.x[:-1]).any())
-    return sample.reaching(percent / 100) if repeats and not np.isnan(found) else found
+    return sample.reaching(percent / 100) if repeats and not np.isnan(value) else value
 
 
 def _correlation(first: ForecastResult, second: ForecastResult, kind: float | None) -> float | None:
@@ -188,5 +188,5 @@ def _correlation(first: ForecastResult, second: ForecastResult, kind: float | No
 
 
 def _by_name(result: ForecastResult, what: str) -> float:
-    found = getattr(result.statistics, what)
-    return float(found) if what == "trials" else float(found.value)
+    value = getattr(result.statistics, what)
+    return float(value) if what == "trials" else float(value.value)

@@ -93,7 +93,7 @@ def shown_results(
     """
     showing = _Showing(workbook, formulas.keys() - unavailable.keys(), unavailable, at_base)
     showing.answer({cell: unfold(tree) for cell, tree in formulas.items() if cell not in unavailable}, answers)
-    return showing.found()
+    return showing.result()
 
 
 def recalculated(workbook: Workbook, cells: Iterable[Cell]) -> ShownResults:
@@ -103,9 +103,9 @@ def recalculated(workbook: Workbook, cells: Iterable[Cell]) -> ShownResults:
         workbook: with the new contents.
         cells: that have them; no formulas.
     """
-    found = _Showing(workbook, frozenset(), {}, {}, frozenset(cells)).found()
-    formulas = {cell: why for cell, why in found.missing.items() if workbook.content(cell).formula is not None}
-    return ShownResults(found.values, formulas)
+    result = _Showing(workbook, frozenset(), {}, {}, frozenset(cells)).result()
+    formulas = {cell: why for cell, why in result.missing.items() if workbook.content(cell).formula is not None}
+    return ShownResults(result.values, formulas)
 
 
 class _Showing:
@@ -171,11 +171,11 @@ class _Showing:
     ) -> dict[tuple[Cell, ir.Expression], float | None]:
         """Return what the arguments of calls are; None if one is no number."""
         trees = [(cell, tree) for cell, call in asked for tree in result_call(call).arguments]
-        found = {each: number_of(each[1]) for each in trees}
-        open_ = [each for each, number in found.items() if number is None]
+        result = {each: number_of(each[1]) for each in trees}
+        open_ = [each for each, number in result.items() if number is None]
         sites = {InFormula.of(cell, f"argument {k}"): (cell, tree) for k, (cell, tree) in enumerate(open_, start=1)}
         if not sites:
-            return found
+            return result
         self._trees |= {site: tree for site, (_, tree) in sites.items()}
         for cell, tree in sites.values():
             self._add_needs({cell: self._cells_of([tree])})
@@ -186,8 +186,10 @@ class _Showing:
                 self._missing[cell] = faults[site]
             else:
                 value = _value(lowering, site)
-                found[cell, tree] = None if isinstance(value, bool | str | ErrorCode) or value is None else float(value)
-        return found
+                result[cell, tree] = (
+                    None if isinstance(value, bool | str | ErrorCode) or value is None else float(value)
+                )
+        return result
 
     def _answered(
         self,
@@ -210,7 +212,7 @@ class _Showing:
             self._missing[cell] = error.message
             return tree
 
-    def found(self) -> ShownResults:
+    def result(self) -> ShownResults:
         """Compute until no further cell turns out to depend on a result, or to be one that cannot be computed."""
         missing, changed = self._split()
         while True:
@@ -277,10 +279,10 @@ class _Showing:
             try:
                 lowering = lower_until_complete(lower)
             except FormulaError as error:  # Excel has saved no value that could stand in for it
-                found = [cell for cell in (self._formulas | targets) - stuck.keys() if str(cell) == error.where]
-                if not found:
+                cells = [cell for cell in (self._formulas | targets) - stuck.keys() if str(cell) == error.where]
+                if not cells:
                     raise
-                stuck |= dict.fromkeys(found, error.message)
+                stuck |= dict.fromkeys(cells, error.message)
             else:
                 return lowering, stuck | faults_of(lowering, "cannot be computed from the results")
 
@@ -295,14 +297,14 @@ class _Showing:
 
 def _innermost(tree: ir.Expression) -> list[ir.Call]:
     """Return the calls for results in a formula, those left out that hold others."""
-    found: list[ir.Call] = []
+    calls: list[ir.Call] = []
 
     def look(part: ir.Expression) -> None:
         if isinstance(part, ir.Call) and is_result(part) and not any(map(_innermost, part.arguments)):
-            found.append(part)
+            calls.append(part)
 
     substitute(tree, look)
-    return found
+    return calls
 
 
 class _Watching(Lowering):

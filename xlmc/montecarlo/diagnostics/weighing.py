@@ -106,14 +106,14 @@ def choose_method(model: CompiledModel, settings: Settings) -> str:
         raise SimulationError(f"a run {what} cannot weight its trials", hint=hint)
     if asked != "auto" or goal:
         return "rejection" if goal else asked
-    found = evidence_trials(model, settings.seed, min(settings.trials, FIRST_TRIALS))
-    logs = found.log_weights.sum(axis=0)
+    trials = evidence_trials(model, settings.seed, min(settings.trials, FIRST_TRIALS))
+    logs = trials.log_weights.sum(axis=0)
     largest = logs.max(initial=-np.inf)
     if largest == -np.inf:
         return "rejection"
     shares = np.exp(logs - largest)
     accepted, effective = float(np.exp(logs).sum()), float(shares.sum()) ** 2 / float(np.sum(shares * shares))
-    few = accepted * settings.trials / found.trials < FEWEST_KEPT
+    few = accepted * settings.trials / trials.trials < FEWEST_KEPT
     return "weights" if few and effective >= GAIN * accepted else "rejection"
 
 

@@ -116,13 +116,13 @@ class ByMoments(FoundMember):
         mean, spread = values[-2:]
         deviation = abs(mean) * spread * _OF_MEAN[self.spread.key] if self.spread.key in _OF_MEAN else spread
         with np.errstate(all="ignore"):
-            found = _parameters(self.family, given, mean, deviation)
-            if found is None or self.family.broken_rule(*found) is not None:
+            result = _parameters(self.family, given, mean, deviation)
+            if result is None or self.family.broken_rule(*result) is not None:
                 return None
-            member = Member(self.family, found)
+            member = Member(self.family, result)
             away = abs(float(member.mean()) - mean) / max(abs(mean), deviation)
             apart = abs(math.sqrt(max(float(member.variance()), 0.0)) - deviation) / deviation
-        return found if away <= _MET and apart <= _MET else None
+        return result if away <= _MET and apart <= _MET else None
 
 
 def _parameters(family: Family, given: dict[str, float], mean: float, deviation: float) -> tuple[float, ...] | None:

@@ -124,11 +124,11 @@ def match_percentiles(family: Family, given: Mapping[str, float], points: Points
     p, x = (np.array(each) for each in zip(*points, strict=True))
     candidates = _ordered(family, given, points) if "ordered" in family.roles else _moved(family, given, points)
     with np.errstate(all="ignore"):
-        for found in candidates:
-            if family.broken_rule(*found) is None:
-                away = np.abs(Member(family, found).ppf(p) - x)
+        for result in candidates:
+            if family.broken_rule(*result) is None:
+                away = np.abs(Member(family, result).ppf(p) - x)
                 if np.all(away <= _MET * _spread(given, points)):
-                    return found
+                    return result
     return None
 
 
@@ -146,8 +146,8 @@ def _moved(family: Family, given: Mapping[str, float], points: Points) -> Iterat
         roots = _roots(lambda logs: member.misfit(np.exp(logs)) / spread, _LOG_SHAPES)
         shapes = [math.exp(root) for root in sorted(roots, key=abs)]
     for shape in shapes:
-        if (found := member.parameters(shape)) is not None:
-            yield found
+        if (result := member.parameters(shape)) is not None:
+            yield result
 
 
 class _Moved:
@@ -236,7 +236,7 @@ def _ordered(family: Family, given: Mapping[str, float], points: Points) -> Iter
         roots = _roots(lambda grid: np.array([misfit(np.array([each]))[0] for each in grid]), _COORDINATES)
         yield from (chart.parameters(np.array([root])) for root in roots)
     else:
-        yield from (chart.parameters(found) for found in _least(misfit, chart.starts()))
+        yield from (chart.parameters(values) for values in _least(misfit, chart.starts()))
 
 
 def _least(misfit: Callable[[Array], Array], starts: Iterable[Array]) -> Iterator[Array]:
@@ -244,9 +244,9 @@ def _least(misfit: Callable[[Array], Array], starts: Iterable[Array]) -> Iterato
     from scipy.optimize import least_squares
 
     for start in starts:
-        found = least_squares(misfit, start, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15)
-        if np.all(np.abs(found.fun) <= _MET):
-            yield found.x
+        value = least_squares(misfit, start, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15)
+        if np.all(np.abs(value.fun) <= _MET):
+            yield value.x
 
 
 class _Chart:

@@ -62,14 +62,14 @@ class Part:
         if self.family is None:
             return (self._spec("", self.name.capitalize()),)
         named = f"{self.name.capitalize()} ({self.family.name})"
-        found = [self._spec(spec.key, f"{named}: {spec.heading}") for spec in self.family.parameters]
+        result = [self._spec(spec.key, f"{named}: {spec.heading}") for spec in self.family.parameters]
         for given, key, heading in (
             (self.lower, "lower cutoff", "lower cutoff"),
             (self.upper, "upper cutoff", "upper cutoff"),
             (self.shifted, "shift", "shift"),
         ):
-            found += [self._spec(key, f"{named}: {heading}")] * given
-        return tuple(found)
+            result += [self._spec(key, f"{named}: {heading}")] * given
+        return tuple(result)
 
     def _spec(self, key: str, heading: str) -> ParameterSpec:
         return ParameterSpec(f"{self.name} {key}".strip(), (heading,))
@@ -280,8 +280,8 @@ class Compound(Family):
         """Mean or variance for each trial."""
         shape = np.broadcast_shapes(*map(np.shape, values))
         columns = [np.broadcast_to(value, shape).ravel().tolist() for value in values]
-        found = [self._moments(*row)[which] for row in zip(*columns, strict=True)]
-        return np.array(found).reshape(shape)
+        result = [self._moments(*row)[which] for row in zip(*columns, strict=True)]
+        return np.array(result).reshape(shape)
 
     def _moments(self, *values: float) -> tuple[float, float]:
         given, amounts, deductible, limit = self._split(values)

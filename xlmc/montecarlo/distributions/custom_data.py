@@ -116,12 +116,12 @@ def custom_pieces(rows: Sequence[Row], *, cumulative: bool = False) -> list[Piec
     if columns == 2:
         return weighted_pieces(rows, cumulative=cumulative)
     weights = _weights(rows, 2, cumulative)
-    found: list[_Read] = []
+    reads: list[_Read] = []
     before: float | None = None  # the end of the row before
     for (number, row), weight in zip(_filled(rows), weights, strict=True):
-        found.append(_Read(_pieces_of(row, number, weight, before), number))
+        reads.append(_Read(_pieces_of(row, number, weight, before), number))
         before = row[0] if row[1] is None else row[1]
-    weighted = [read for read, weight in zip(found, weights, strict=True) if weight > 0]
+    weighted = [read for read, weight in zip(reads, weights, strict=True) if weight > 0]
     _refuse_many(sum(len(read.pieces) for read in weighted))
     _refuse_overlaps(weighted)
     return [piece for read in sorted(weighted, key=lambda read: (read.low, read.high)) for piece in read.pieces]
@@ -224,8 +224,8 @@ def _refuse_many(count: float, position: Position = (0, 0)) -> None:
         raise DataError(message, "Take a larger step, or a range without steps", *position)
 
 
-def _refuse_overlaps(found: Iterable[_Read]) -> None:
-    for first, second in pairwise(sorted(found, key=lambda read: (read.low, read.high))):
+def _refuse_overlaps(reads: Iterable[_Read]) -> None:
+    for first, second in pairwise(sorted(reads, key=lambda read: (read.low, read.high))):
         if second.clashes_with(first):
             ends = [f"{show(read.low)} to {show(read.high)}" for read in (second, first)]
             message = f"This row ({ends[0]}) overlaps the row of {{also}} ({ends[1]})"

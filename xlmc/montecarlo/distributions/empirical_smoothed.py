@@ -159,13 +159,13 @@ class EmpiricalSmoothed(Family):
         from scipy.special import ndtr
 
         asked = np.atleast_1d(np.asarray(x, dtype=float))
-        found = np.empty(asked.shape)
+        values = np.empty(asked.shape)
         for index, point in np.ndenumerate(asked):
             near, before = self._near(np.array([point]))
-            found[index] = (before + ndtr((point - near) / self.bandwidth).sum()) / self.values.size
+            values[index] = (before + ndtr((point - near) / self.bandwidth).sum()) / self.values.size
         low, high = self._support()
-        found = np.where(asked < low, 0.0, np.where(asked > high, 1.0, found))
-        return found.reshape(np.shape(x))
+        values = np.where(asked < low, 0.0, np.where(asked > high, 1.0, values))
+        return values.reshape(np.shape(x))
 
     @cached_property
     def _mirror(self) -> EmpiricalSmoothed:

@@ -47,10 +47,10 @@ class FoundMember(Family):
         Raises:
             ValueError: no member of the family has these numbers.
         """
-        found = self._member(*self.bind(params, named))
-        if found is None:
+        result = self._member(*self.bind(params, named))
+        if result is None:
             raise ValueError(self.check(*params, **named))
-        return found
+        return result
 
     def _numbers(self, values: tuple[Any, ...]) -> tuple[float, ...]:
         """Return the parameters as numbers.
@@ -64,8 +64,8 @@ class FoundMember(Family):
 
     def _own(self, values: tuple[Any, ...]) -> Member:
         """Return the family with its own parameters; NaN, where no member has these numbers."""
-        found = self._member(*self._numbers(values)) or (np.nan,) * len(self.family.parameters)
-        return Member(self.family, found)
+        result = self._member(*self._numbers(values)) or (np.nan,) * len(self.family.parameters)
+        return Member(self.family, result)
 
     def _ppf(self, u: Array, *values: Any) -> Array:
         return self._own(values).ppf(u, out=u)

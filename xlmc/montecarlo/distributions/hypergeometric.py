@@ -63,20 +63,20 @@ class Hypergeometric(WholeNumbers):
 
     def _looked_up(self, side: int, k: Values, *params: Values) -> Array:
         columns = np.broadcast_arrays(k, *params)
-        asked, found = columns[0].ravel(), np.full(columns[0].size, np.nan)
+        asked, values = columns[0].ravel(), np.full(columns[0].size, np.nan)
         for row, here in _alike(columns[1:]):
             first, *tails = _tails(*row)
             index = np.clip(asked[here] - first + 1, 0, tails[side].size - 1)
-            found[here] = tails[side][index.astype(np.intp)]
-        return found.reshape(columns[0].shape)
+            values[here] = tails[side][index.astype(np.intp)]
+        return values.reshape(columns[0].shape)
 
     def _ppf(self, u: Array, *params: Values) -> Array:
         columns = np.broadcast_arrays(u, *params)
-        found = np.full(u.size, np.nan)
+        values = np.full(u.size, np.nan)
         for row, here in _alike(columns[1:]):
             first, at_most, _ = _tails(*row)
-            found[here] = first - 1 + np.searchsorted(at_most, u.ravel()[here])
-        return found.reshape(u.shape)
+            values[here] = first - 1 + np.searchsorted(at_most, u.ravel()[here])
+        return values.reshape(u.shape)
 
     def _mean(self, success: Values, trials: Values, population: Values) -> Values:
         return trials * (success / population)

@@ -87,8 +87,8 @@ def _log_below(y: Array, dispersion: Values) -> Array:
     from scipy.special import log_ndtr
 
     score, second = _parts(y, dispersion)
-    found = np.logaddexp(log_ndtr(score), second)
-    return np.where(y > 0, np.where(np.isfinite(y), np.minimum(found, 0.0), 0.0), -np.inf)
+    value = np.logaddexp(log_ndtr(score), second)
+    return np.where(y > 0, np.where(np.isfinite(y), np.minimum(value, 0.0), 0.0), -np.inf)
 
 
 def _log_above(y: Array, dispersion: Values) -> Array:
@@ -96,8 +96,8 @@ def _log_above(y: Array, dispersion: Values) -> Array:
 
     score, second = _parts(y, dispersion)
     first = log_ndtr(-score)
-    found = first + np.log(-np.expm1(np.minimum(second - first, 0.0)))
-    return np.where(y > 0, np.where(np.isfinite(y), found, -np.inf), 0.0)
+    value = first + np.log(-np.expm1(np.minimum(second - first, 0.0)))
+    return np.where(y > 0, np.where(np.isfinite(y), value, -np.inf), 0.0)
 
 
 def _at_score(z: Array, dispersion: Values) -> Array:

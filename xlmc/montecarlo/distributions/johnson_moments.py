@@ -107,8 +107,8 @@ class JohnsonMoments(Family):
 def _by_member(hook: Callable[[Member, Array], Any], at: Values, skewness: Values, kurtosis: Values) -> Array:
     """Evaluate a function of the standardised member; NaN without one."""
     at, skewness, kurtosis = np.broadcast_arrays(*(np.asarray(each, dtype=float) for each in (at, skewness, kurtosis)))
-    found = np.full(at.shape, np.nan)
-    flat = found.reshape(-1)
+    values = np.full(at.shape, np.nan)
+    flat = values.reshape(-1)
     pairs, which = np.unique(np.stack([skewness.ravel(), kurtosis.ravel()]), axis=1, return_inverse=True)
     for i, (skew, kurt) in enumerate(pairs.T.tolist()):
         member = _member(skew, kurt)
@@ -238,9 +238,9 @@ def _bounded(skewness: float, kurtosis: float) -> Member | None:
 
     for first, second in _STARTS:
         start = np.array([0.0 if skewness == 0 else first, math.log(second)])
-        found = least_squares(misfit, start, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=400)
-        if np.all(np.abs(found.fun) < _MET * max(1.0, skewness)):
-            shapes = float(found.x[0]), math.exp(float(found.x[1]))
+        value = least_squares(misfit, start, method="lm", xtol=1e-15, ftol=1e-15, gtol=1e-15, max_nfev=400)
+        if np.all(np.abs(value.fun) < _MET * max(1.0, skewness)):
+            shapes = float(value.x[0]), math.exp(float(value.x[1]))
             mean, variance = (float(each) for each in share_moments(*shapes))
             width = 1 / math.sqrt(variance)
             return Member(_BOUNDED, (-mean * width, (1 - mean) * width, *shapes))

@@ -177,9 +177,9 @@ class Between(Family):
         for row in np.flatnonzero(np.diff(values) <= 0):
             message = f"The value {show(values[row + 1])} is not above the one before it, {show(values[row])}"
             raise DataError(message, "Sort the rows so that the values rise", int(row) + 1, 0)
-        found = type(self)(values, heights)
-        _ = found._middle  # refuses values that are too near to each other
-        return found
+        result = type(self)(values, heights)
+        _ = result._middle  # refuses values that are too near to each other
+        return result
 
     def bind(self, params: Any, named: Any) -> tuple[Any, ...]:
         if not hasattr(self, "values"):

@@ -40,11 +40,11 @@ def by_names(those: Iterable[_Row]) -> dict[str, _Row]:
     them as its own.
     """
     rows = tuple(those)
-    found = {name_key(each.name): each for each in rows}
+    result = {name_key(each.name): each for each in rows}
     for each in rows:
         for name in each.names:
-            found.setdefault(name_key(name), each)
-    return found
+            result.setdefault(name_key(name), each)
+    return result
 
 
 @lru_cache(maxsize=2048)
@@ -64,8 +64,8 @@ def nearest(text: str, known: Iterable[str], closeness: float = 0.6) -> str | No
     'Uniform'
     """
     spellings = {plain(name): name for name in known}
-    found = get_close_matches(plain(text), spellings, n=1, cutoff=closeness)
-    return spellings[found[0]] if found else None
+    result = get_close_matches(plain(text), spellings, n=1, cutoff=closeness)
+    return spellings[result[0]] if result else None
 
 
 def did_you_mean(text: str, known: Iterable[str]) -> str:
@@ -75,5 +75,5 @@ def did_you_mean(text: str, known: Iterable[str]) -> str:
     'Use one of Normal, Uniform'
     """
     known = tuple(" ".join(name.split()) for name in known)  # a name may have a line break
-    found = nearest(text, known)
-    return f"Did you mean {found}?" if found else f"Use one of {', '.join(known)}"
+    result = nearest(text, known)
+    return f"Did you mean {result}?" if result else f"Use one of {', '.join(known)}"

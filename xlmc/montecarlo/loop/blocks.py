@@ -267,22 +267,22 @@ class ModelRunner:
         return [Column(np.empty(0)) for _ in range(self._width)]
 
 
-def _block_of(found: AcceptedBlock, prior: dict[str, Floats] | None, trials: int) -> Block:
+def _block_of(block: AcceptedBlock, prior: dict[str, Floats] | None, trials: int) -> Block:
     """Make a block of so many trials without errors; `prior` are the draws of all, if they are asked for."""
-    faults: list[Counter[str]] = [Counter() for _ in found.forecasts]
-    errors: list[Counter[str]] = [Counter() for _ in found.only]
-    tally = FilterTally(np.diagonal(found.together).copy(), found.only, found.together, errors, 0)
+    faults: list[Counter[str]] = [Counter() for _ in block.forecasts]
+    errors: list[Counter[str]] = [Counter() for _ in block.only]
+    tally = FilterTally(np.diagonal(block.together).copy(), block.only, block.together, errors, 0)
     return Block(
         trials,
-        found.accepted,
-        found.draws,
-        found.forecasts,
+        block.accepted,
+        block.draws,
+        block.forecasts,
         faults,
         tally,
         Counter(),
         0,
         prior,
-        found.discards,
+        block.discards,
     )
 
 
@@ -338,8 +338,8 @@ def _undecided(columns: Sequence[Column], trials: int) -> Bools:
     errors = [column.codes[:trials] > 0 for column in columns if column.codes is not None]
     if not errors:
         return np.zeros(trials, bool)
-    found, false = _any(errors, trials), [_false(column)[:trials] for column in columns]
-    return found & ~_any(false, trials)
+    mask, false = _any(errors, trials), [_false(column)[:trials] for column in columns]
+    return mask & ~_any(false, trials)
 
 
 def _false(column: Column) -> Bools:
@@ -357,12 +357,12 @@ def _spoiled(
     """Return the trials of a block, `(n,)`, in which a draw is none, and a filter or a survivor's forecast has no
     number.
     """
-    found = _any(invalid, n)
-    if found.any():
+    mask = _any(invalid, n)
+    if mask.any():
         errors = _any_error(filters, n)
         errors[survivors] |= _any_error(forecasts, survivors.size)
-        found &= errors
-    return found
+        mask &= errors
+    return mask
 
 
 def _any_error(columns: Sequence[Column], n: int) -> Bools:

@@ -104,12 +104,12 @@ class CandidateTrials:
         """Return the trials of each candidate from `start` to `stop`."""
         if any(self._is_text):
             return self._of_texts(candidates, start, stop)
-        found = [Computed(np.full((len(self._wanted), stop - start), np.nan)) for _ in candidates]
+        results = [Computed(np.full((len(self._wanted), stop - start), np.nan)) for _ in candidates]
         workers = max(1, min(self._jobs, len(candidates)))
         shares = [range(number, len(candidates), workers) for number in range(workers)]
 
         def fill(number: int) -> None:
-            self._fill(candidates, [*shares[number]], found, start, stop, number)
+            self._fill(candidates, [*shares[number]], results, start, stop, number)
 
         if workers == 1:
             fill(0)
@@ -117,13 +117,13 @@ class CandidateTrials:
             with ThreadPoolExecutor(workers) as pool:
                 list(pool.map(fill, range(workers)))
         self.computed += len(candidates) * (stop - start)
-        return found
+        return results
 
     def _fill(
         self,
         candidates: Sequence[Values],
         mine: Sequence[int],
-        found: Sequence[Computed],
+        results: Sequence[Computed],
         start: int,
         stop: int,
         worker: int,
@@ -137,8 +137,8 @@ class CandidateTrials:
                 runner = self._runner(candidates[number], size, worker)
                 if runner is not None:
                     rows, lost = self._columns(runner, Task(first, count, prior=False, inputs=False))
-                    found[number].columns[:, at] = rows
-                    found[number].lost += lost
+                    results[number].columns[:, at] = rows
+                    results[number].lost += lost
 
     def _block_size(self, start: int, stop: int) -> int:
         """Return a power of two of trials: what is asked for begins at a multiple of it, as long as it is one."""
@@ -187,16 +187,16 @@ class CandidateTrials:
         if candidate not in self._typed:
             typed = {each.cell: each.content(value) for each, value in zip(self._decisions, candidate, strict=True)}
             try:
-                found = model_with_values(self._model, typed)
-                same = [f.name for f in found.forecasts] == [f.name for f in self._model.forecasts]
-                self._typed[candidate] = found if same else None
+                model = model_with_values(self._model, typed)
+                same = [f.name for f in model.forecasts] == [f.name for f in self._model.forecasts]
+                self._typed[candidate] = model if same else None
             except XlmcError:
                 self._typed[candidate] = None
         return self._typed[candidate]
 
     def _of_texts(self, candidates: Sequence[Values], start: int, stop: int) -> list[Computed]:
         """Compute candidates that have the same texts as those of one workbook, into which these are typed."""
-        found = [Computed(np.full((len(self._wanted), stop - start), np.nan)) for _ in candidates]
+        results = [Computed(np.full((len(self._wanted), stop - start), np.nan)) for _ in candidates]
         texts = [self._part(each, of_texts=True) for each in candidates]
         for key in dict.fromkeys(texts):
             trials = self._trials_of(key)
@@ -205,9 +205,9 @@ class CandidateTrials:
             numbers = [number for number, each in enumerate(texts) if each == key]
             parts = [self._part(candidates[number], of_texts=False) for number in numbers]
             for number, each in zip(numbers, trials.forecasts(parts, start, stop), strict=True):
-                found[number] = each
+                results[number] = each
         self.computed += len(candidates) * (stop - start)
-        return found
+        return results
 
     def _part(self, candidate: Values, *, of_texts: bool) -> Values:
         return tuple(value for value, is_text in zip(candidate, self._is_text, strict=True) if is_text == of_texts)
@@ -232,10 +232,10 @@ class CandidateTrials:
         if self._model.definitions.feeding is not None or any(self._is_text):
             return None
         try:
-            found = _model_with_inputs(self._model, self._decisions)
+            model = _model_with_inputs(self._model, self._decisions)
         except XlmcError:
             return None
-        self._held, self.by_typing = found, False
+        self._held, self.by_typing = model, False
         for candidate in self._looked_at():
             self.by_typing = False
             (held,) = self.forecasts([candidate], 0, _CHECKED)
@@ -244,7 +244,7 @@ class CandidateTrials:
             if not np.allclose(held.columns, typed.columns, rtol=_ALIKE, atol=0.0, equal_nan=True):
                 return None
         self.computed = 0
-        return found
+        return model
 
     def _looked_at(self) -> list[Values]:
         """Return three candidates in which each decision has its least, a middle and its largest value."""
@@ -308,9 +308,9 @@ class _HeldDraw(Draw):
     @classmethod
     def instead_of(cls, draw: Draw, held: Callable[[], float]) -> _HeldDraw:
         """Return what takes the place of a draw."""
-        found = cls(draw.name, draw.family, draw.parameters, draw.cutoffs)
-        object.__setattr__(found, "held", held)  # a draw is frozen
-        return found
+        held_draw = cls(draw.name, draw.family, draw.parameters, draw.cutoffs)
+        object.__setattr__(held_draw, "held", held)  # a draw is frozen
+        return held_draw
 
 
 @dataclass(slots=True)

@@ -48,9 +48,9 @@ class Labels:
     def renumbered(self, values: Floats, labels: Sequence[str]) -> Floats:
         """Return `(m,)` numbers of a block's texts as those of the run; NaN, a trial without one, stays."""
         known = ~np.isnan(values)
-        found, first = np.unique(values[known].astype(np.intp), return_index=True)
+        result, first = np.unique(values[known].astype(np.intp), return_index=True)
         own = np.zeros(len(labels) + 1)
-        for number in found[np.argsort(first)].tolist():
+        for number in result[np.argsort(first)].tolist():
             own[number] = self._numbers.setdefault(labels[number], len(self._numbers))
         renumbered = np.full(values.size, np.nan)
         renumbered[known] = own[values[known].astype(np.intp)]

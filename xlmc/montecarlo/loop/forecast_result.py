@@ -141,8 +141,8 @@ class ForecastResult:
             text: statistics.probability_between(self.sample, float(number), float(number))
             for number, text in enumerate(self._labels or ())
         }
-        found = {text: share for text, share in shares.items() if share.value > 0.0}
-        return dict(sorted(found.items(), key=lambda each: -each[1].value))
+        result = {text: share for text, share in shares.items() if share.value > 0.0}
+        return dict(sorted(result.items(), key=lambda each: -each[1].value))
 
     @property
     def numbers_of_texts(self) -> tuple[float, ...]:
@@ -177,23 +177,23 @@ class ForecastResult:
         d = self.definition
         if self._labels is not None:
             return statistics.undescribed(int(self.values.size))
-        found = statistics.describe(self.sample, central=d.central, threshold=d.threshold)
+        description = statistics.describe(self.sample, central=d.central, threshold=d.threshold)
         if self.sample.w is None:
-            return found
-        low, high = found.central
+            return description
+        low, high = description.central
         tail = (1.0 - d.central) / 2.0
         return replace(
-            found,
+            description,
             trials=int(self.values.size),
-            median=self._if_known(found.median, 0.5),
-            percentiles={key: self._if_known(each, key / 100.0) for key, each in found.percentiles.items()},
+            median=self._if_known(description.median, 0.5),
+            percentiles={key: self._if_known(each, key / 100.0) for key, each in description.percentiles.items()},
             central=(self._if_known(low, tail), self._if_known(high, tail)),
         )
 
-    def _if_known(self, found: Estimate, share: float) -> Estimate:
+    def _if_known(self, estimate: Estimate, share: float) -> Estimate:
         """Return a quantile; nan where trials are weighted and too few lie beyond it in effect."""
         few = self.sample.w is not None and self.sample.effective * min(share, 1.0 - share) < LEAST_BEYOND
-        return Estimate(math.nan, n=found.n) if few else found
+        return Estimate(math.nan, n=estimate.n) if few else estimate
 
     @property
     def mean(self) -> Estimate:
@@ -308,18 +308,18 @@ def interval_notices(samples: Mapping[str, Sample], method: str) -> list[Notice]
         samples: forecast -> its accepted trials.
         method: the sampling method in words.
     """
-    found = []
+    result = []
     if short := _named(samples, too_short):
-        found.append(
+        result.append(
             f"the interval of {short} may be too short: a few trials far out in the tail decide such a number, and "
             "more of their kind may be missing. More trials help; percentiles and shares have intervals that hold"
         )
     if plain := _named(samples, _only_from_trials):
-        found.append(
+        result.append(
             f"the error of {plain} is that of independent trials: a few trials far out in the tail decide such a "
             f"number, and the replicates are too few to show its error. By {method} it may vary less than that"
         )
-    return [Notice(message) for message in found]
+    return [Notice(message) for message in result]
 
 
 def _only_from_trials(sample: Sample) -> list[str]:

@@ -107,8 +107,8 @@ class ReusingRunner:
         if key not in self._bases:
             evaluator = self._program.evaluator(1)
             columns = evaluator.filters(inputs | model.certain(1), 1)[-len(model.answer_targets) :]
-            found = [float(column.as_floats()[0]) for column in columns]
-            self._bases = {key: dict(zip((f.name for f in model.forecasts), map(finite, found), strict=False))}
+            result = [float(column.as_floats()[0]) for column in columns]
+            self._bases = {key: dict(zip((f.name for f in model.forecasts), map(finite, result), strict=False))}
         return self._bases[key]
 
 
@@ -180,9 +180,9 @@ class _Draws:
                 own = values.copy()
                 own.flags.writeable = False
                 stored_columns[draw.name, start] = _Column(draw, own, self._versions)
-        found = [stored_columns[draw.name, start] for draw in self._draws]
-        self.known = start, tuple(each.version for each in found)
-        return {each.draw.name: each.values for each in found}
+        columns = [stored_columns[draw.name, start] for draw in self._draws]
+        self.known = start, tuple(each.version for each in columns)
+        return {each.draw.name: each.values for each in columns}
 
 
 class _MovedEvaluator:
@@ -208,12 +208,12 @@ class _MovedEvaluator:
     def filters(self, inputs: Mapping[str, Floats], n: int) -> list[Column]:
         """See `Evaluator`."""
         columns = self._all(inputs, n)
-        found, at = [], 0
+        result, at = [], 0
         for filter_, size in zip(self._filters, self._sizes, strict=True):
-            found.append(_condition(filter_, columns[at : at + size]))
+            result.append(_condition(filter_, columns[at : at + size]))
             at += size
         self._answers = columns[at:]
-        return found
+        return result
 
     def forecasts(self, survivors: NDArray[np.intp]) -> list[Column]:
         """See `Evaluator`."""

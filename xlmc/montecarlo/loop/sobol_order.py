@@ -80,7 +80,7 @@ def _largest_correlations(accepted: Mapping[str, Floats], forecasts: Sequence[Fl
     for forecast in forecasts:
         numbers = np.flatnonzero(~np.isnan(forecast))[:_COMPARED]
         alike.setdefault(numbers.tobytes(), (numbers, []))[1].append(centred_ranks(forecast[numbers]))
-    found = dict.fromkeys(accepted, 0.0)
+    result = dict.fromkeys(accepted, 0.0)
     for numbers, ranks in alike.values():
         of_forecasts = np.array(ranks)
         squares = np.sum(of_forecasts**2, axis=1)
@@ -88,8 +88,8 @@ def _largest_correlations(accepted: Mapping[str, Floats], forecasts: Sequence[Fl
             own = centred_ranks(draws[numbers])
             size = np.sqrt(squares * np.sum(own**2))
             each = np.divide(np.abs(of_forecasts @ own), size, out=np.zeros_like(size), where=size > 0.0)
-            found[name] = max(found[name], min(float(each.max()), 1.0))
-    return found
+            result[name] = max(result[name], min(float(each.max()), 1.0))
+    return result
 
 
 def _joined(parts: Sequence[Mapping[str, Floats]]) -> dict[str, Floats]:

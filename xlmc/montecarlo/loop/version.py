@@ -12,9 +12,9 @@ def _version() -> str:
     """Return the version that `pyproject.toml` states: of a checkout from that file, else as it was installed."""
     project = Path(__file__).parents[3] / "pyproject.toml"
     if project.is_file():
-        found = re.search(r'^name = "xlmc"\nversion = "([^"]+)"$', project.read_text(encoding="utf-8"), re.MULTILINE)
-        if found is not None:
-            return found[1]
+        match = re.search(r'^name = "xlmc"\nversion = "([^"]+)"$', project.read_text(encoding="utf-8"), re.MULTILINE)
+        if match is not None:
+            return match[1]
     from importlib.metadata import version
 
     return version("xlmc")

@@ -88,10 +88,10 @@ def applied(model: CompiledModel, changes: Iterable[Change]) -> CompiledModel:
         before, workbook = again, again.workbook
     else:
         workbook = with_values(before.workbook, cells)
-    found = before.changed(workbook, definitions)
-    if _filters_of(found) != _filters_of(before) and (faults := filter_faults(found)):
+    result = before.changed(workbook, definitions)
+    if _filters_of(result) != _filters_of(before) and (faults := filter_faults(result)):
         raise faults[0]
-    return found
+    return result
 
 
 def reads_again(model: CompiledModel, changes: Iterable[Change]) -> bool:
@@ -184,14 +184,14 @@ def changed_cells(model: CompiledModel, definitions: Definitions) -> tuple[dict[
     tables = tables_of(model.workbook)
     for old, new in zip(_rows(model.definitions), _rows(definitions), strict=True):
         if old is not new:
-            found, missing = cells_that_change(model.workbook, old, new, tables)
-            cells |= found
+            result, missing = cells_that_change(model.workbook, old, new, tables)
+            cells |= result
             if missing:
                 lacking[old.name] = missing
     for was, is_now in zip(model.definitions.correlations, definitions.correlations, strict=True):
         if was is not is_now:
-            found, missing = cells_that_change(model.workbook, was, is_now, tables)
-            cells |= found
+            result, missing = cells_that_change(model.workbook, was, is_now, tables)
+            cells |= result
             if missing:
                 lacking[f"{was.first} and {was.second}"] = missing
     return cells, lacking
@@ -331,10 +331,12 @@ def _measured(filter_: Filter, change: Measured) -> Filter:
     if wrong is not None:
         message = f"the error of {filter_.name!r} is not given by {SIZES.get(wrong, wrong)}"
         raise DefinitionError(message, where=change.where or filter_.row, hint="change what it is given by")
-    found = replace(evidence, reading=change.values.get("reading", evidence.reading), sizes={**evidence.sizes, **sizes})
-    assert not any(found.cells), "a model knows the numbers of evidence"
-    check_sizes(found, found.reading, found.sizes)  # type: ignore[arg-type]  # numbers, as asserted
-    return as_filter(found)
+    result = replace(
+        evidence, reading=change.values.get("reading", evidence.reading), sizes={**evidence.sizes, **sizes}
+    )
+    assert not any(result.cells), "a model knows the numbers of evidence"
+    check_sizes(result, result.reading, result.sizes)  # type: ignore[arg-type]  # numbers, as asserted
+    return as_filter(result)
 
 
 def _stated(forecast: Forecast, change: Stated) -> Forecast:
@@ -396,10 +398,10 @@ def _known(
 
 def _refuse_contradiction(filter_: Filter, change: Limits) -> None:
     limits = {key: getattr(filter_, key) for key in LIMITS}
-    found = contradiction({key: None if isinstance(limit, Cell) else limit for key, limit in limits.items()})
-    if found is not None:
+    pair = contradiction({key: None if isinstance(limit, Cell) else limit for key, limit in limits.items()})
+    if pair is not None:
         where = change.where or filter_.row
-        raise DefinitionError(f"{filter_.name}: {found[1]}", where=where, hint="correct one of them")
+        raise DefinitionError(f"{filter_.name}: {pair[1]}", where=where, hint="correct one of them")
 
 
 def _other(assumption: Assumption, change: Change, lowering: Lowering) -> Assumption:

@@ -24,8 +24,8 @@ def formats_of(workbook: Workbook, cells: Iterable[Cell]) -> list[str]:
     wanted = [*cells]
     places = {cell: (workbook.sheets[cell.sheet].part, cell.a1) for cell in wanted if cell.sheet in workbook.sheets}
     parts = workbook.parts or workbook.origin
-    found = cell_formats(parts, roles(parts).workbook, places.values()) if parts else {}
-    return [found[places[cell]] if parts and cell in places else "General" for cell in wanted]
+    result = cell_formats(parts, roles(parts).workbook, places.values()) if parts else {}
+    return [result[places[cell]] if parts and cell in places else "General" for cell in wanted]
 
 
 def forms_of(workbook: Workbook, cells: Iterable[Cell]) -> list[Form]:

@@ -56,8 +56,8 @@ def with_data_tables(workbook: Workbook, definitions: Definitions, varied: Colle
     if changed:
         more = tables_of_run(workbook, changed, (), definitions.rewritten).varying
         definitions = replace(definitions, rewritten={**faults_of(workbook, more), **definitions.rewritten})
-    found = _with_calls(workbook, definitions, _varying(workbook, definitions), varied)
-    return _with_stale_tables(workbook, found, varied)
+    result = _with_calls(workbook, definitions, _varying(workbook, definitions), varied)
+    return _with_stale_tables(workbook, result, varied)
 
 
 def _with_calls(
@@ -67,15 +67,15 @@ def _with_calls(
 
     A table may need cells of another one: those are made again and again until no more can be.
     """
-    left, found = [*tables], definitions
+    left, result = [*tables], definitions
     while left:
-        made = {table: calls for table in left if (calls := _calls(workbook, found, table, varied)) is not None}
+        made = {table: calls for table in left if (calls := _calls(workbook, result, table, varied)) is not None}
         if not made:
             break
         rewritten = {cell: call for calls in made.values() for cell, call in calls.items()}
-        found = replace(found, rewritten={**found.rewritten, **rewritten})
+        result = replace(result, rewritten={**result.rewritten, **rewritten})
         left = [table for table in left if table not in made]
-    return found
+    return result
 
 
 def _with_stale_tables(workbook: Workbook, definitions: Definitions, varied: Collection[Cell]) -> Definitions:
@@ -104,13 +104,13 @@ def _needed_constants(workbook: Workbook, definitions: Definitions) -> list[Data
     wanted = targets_of(definitions.forecasts, (*definitions.filters, *definitions.forecast_filters))
     wanted += [cell for a in definitions.assumptions if not a.frozen for cell in a.cells]
     wanted += [check.cell for check in definitions.checks]
-    found: dict[DataTable, None] = {}
+    result: dict[DataTable, None] = {}
     while wanted:
         reached = build_graph(resolver, wanted, given, strict=False).reached
-        more = [t for t in dict.fromkeys(inside[cell] for cell in reached if cell in inside) if t not in found]
-        found |= dict.fromkeys(more)
+        more = [t for t in dict.fromkeys(inside[cell] for cell in reached if cell in inside) if t not in result]
+        result |= dict.fromkeys(more)
         wanted = [cell for table in more for cell in table.margins()]
-    return list(found)
+    return list(result)
 
 
 def _constants(workbook: Workbook, definitions: Definitions, calls: Mapping[Cell, ir.Call]) -> dict[Cell, object]:
@@ -187,9 +187,9 @@ class _Body:
         for start in range(0, n, block):
             part = slice(start, min(start + block, n))
             inputs = {name: column[part] for name, column in given.items()}
-            (found,) = evaluator.filters(inputs, part.stop - part.start)
-            answers[part] = found.as_floats(copy=False)
-            faults[part] = 0 if found.codes is None else found.codes
+            (result,) = evaluator.filters(inputs, part.stop - part.start)
+            answers[part] = result.as_floats(copy=False)
+            faults[part] = 0 if result.codes is None else result.codes
         codes = np.where(errors > 0, errors, faults)
         codes = np.where(codes > max(ErrorCode), np.uint8(ErrorCode.VALUE), codes).astype(np.uint8)
         return Value.of_numbers(np.where(codes > 0, 0.0, answers), codes)
@@ -211,7 +211,7 @@ def _calls(
     except FormulaError:
         return None
     known: Mapping[str, Cell] = {name: cell for cell, name in named.items()}
-    found = {}
+    result = {}
     for cell in cells:
         formula = table.formula_of(cell)
         body = bodies[formula]
@@ -224,8 +224,8 @@ def _calls(
             home="a what-if data table",
         )
         rest = (known[name] for name in body.names[len(table.inputs) :])
-        found[cell] = ir.Call(f"TABLE.{formula}", (*table.values_of(cell), *rest), given=row)
-    return found
+        result[cell] = ir.Call(f"TABLE.{formula}", (*table.values_of(cell), *rest), given=row)
+    return result
 
 
 def _named(definitions: Definitions, varied: Collection[Cell]) -> dict[Cell, str]:

@@ -110,8 +110,8 @@ def _fold_cell(cell: Cell, lowering: Lowering, what: str) -> Parameter:
     if value is None:
         return cell
     if int(value.kinds[0]) >= ERROR or int(value.kinds[0]) == TEXT:
-        found = value.objects().ravel()[0]
-        shown = f"the error {found.text}" if isinstance(found, ErrorCode) else f"the text {found!r}, not a number"
+        result = value.objects().ravel()[0]
+        shown = f"the error {result.text}" if isinstance(result, ErrorCode) else f"the text {result!r}, not a number"
         raise DefinitionError(f"{what} is {shown}", where=cell, hint="Correct the cell's formula")
     return float(value.numbers[0])
 
@@ -182,15 +182,15 @@ def _with_evidence_numbers(filter_: Filter, lowering: Lowering) -> Filter:
 def _number(evidence: Evidence, value: Parameter | None, lowering: Lowering) -> float:
     assert value is not None, "a row without a reading is no filter"
     what = f"A number of the evidence {evidence.name!r}"
-    found = _fold_cell(value, lowering, what) if isinstance(value, Cell) else value
-    if isinstance(found, Cell):
+    result = _fold_cell(value, lowering, what) if isinstance(value, Cell) else value
+    if isinstance(result, Cell):
         message = f"{what} varies with an assumption"
         hint = (
             "A reading and its error are fixed: where a reading rests on uncertain inputs, let Cell be the difference "
             "of the model's quantity and what they give, with Reading 0"
         )
-        raise DefinitionError(message, where=found, hint=hint)
-    return found
+        raise DefinitionError(message, where=result, hint=hint)
+    return result
 
 
 def _with_coefficient(row: Correlation, lowering: Lowering) -> Correlation:
@@ -224,11 +224,11 @@ def _with_base_parameters(workbook: Workbook, definitions: Definitions) -> Defin
     graph = build_graph(resolver, sought, given, strict=False)
     if given.isdisjoint(graph.reached):
         return definitions
-    changed = {cell: _Own(resolver, definitions, assumption).found(graph) for cell, assumption in rows.items()}
-    numbers = {cell: found for cell, found in changed.items() if found}
+    changed = {cell: _Own(resolver, definitions, assumption).result(graph) for cell, assumption in rows.items()}
+    numbers = {cell: result for cell, result in changed.items() if result}
     if not numbers:
         return definitions
-    notices = (_notice(rows[cell], found) for cell, found in numbers.items())
+    notices = (_notice(rows[cell], results) for cell, results in numbers.items())
     changed_ones = tuple(a.with_numbers(numbers[a.cell]) if a.cell in numbers else a for a in assumptions)
     return replace(definitions, assumptions=changed_ones, notices=(*definitions.notices, *notices))
 
@@ -239,7 +239,7 @@ class _Own:
     def __init__(self, resolver: Resolver, definitions: Definitions, assumption: Assumption) -> None:
         self._resolver, self._definitions, self._assumption = resolver, definitions, assumption
 
-    def found(self, graph: Graph) -> dict[str, float]:
+    def result(self, graph: Graph) -> dict[str, float]:
         """Key of each such parameter -> its number."""
         reached = ((key, cell, upstream(graph, [cell], {})) for key, cell in self._assumption.formulas.items())
         numbers = {key: self._number(key, cell, up) for key, cell, up in reached if self._assumption.cell in up}

@@ -117,11 +117,11 @@ class _FilteringRunner:
             return None
         forecasts, conditions = accepted_block.forecasts[: len(self.own)], accepted_block.forecasts[len(self.own) :]
         fails = [condition == 0 for condition in conditions]
-        found = [
+        result = [
             _discard(column, [fails[index] for index in own]) for column, own in zip(forecasts, self.own, strict=True)
         ]
         return replace(
-            accepted_block, forecasts=[column for column, _ in found], discards=[counts for _, counts in found]
+            accepted_block, forecasts=[column for column, _ in result], discards=[counts for _, counts in result]
         )
 
 

@@ -57,8 +57,8 @@ def is_two_valued(dag: Dag, node: int) -> bool:
 
 
 def _is_negated(dag: Dag, node: int) -> bool:
-    found = dag.nodes[node]
-    return isinstance(found, Apply) and found.function.name == "u-"
+    result = dag.nodes[node]
+    return isinstance(result, Apply) and result.function.name == "u-"
 
 
 def _is_one_zero_or_error(value: Value) -> bool:

@@ -81,7 +81,7 @@ def _reached(lowering: Lowering, definitions: Definitions, parts: Callable[[Node
     targets = targets_of(definitions.forecasts, (*definitions.filters, *definitions.forecast_filters))
     waiting = [lowering.cell(cell) for cell in targets]
     seen: set[int] = set()
-    found: set[str] = set()
+    result: set[str] = set()
     while waiting:
         node_id = waiting.pop()
         if node_id in seen:
@@ -89,10 +89,10 @@ def _reached(lowering: Lowering, definitions: Definitions, parts: Callable[[Node
         seen.add(node_id)
         node = lowering.dag.nodes[node_id]
         if isinstance(node, Input):
-            found.add(node.name)
+            result.add(node.name)
             waiting += [lowering.target(parameter_target(cell)) for cell in formulas.get(node.name, ())]
         waiting += parts(node)
-    return found
+    return result
 
 
 def _spreading(node: Node) -> Iterable[int]:

@@ -43,7 +43,7 @@ def _spelt(assumptions: Sequence[Assumption], live: Sequence[Assumption], names:
     Raises:
         SimulationError: one is missing, unknown or frozen.
     """
-    known, found = by_names(assumptions), dict[str, str]()
+    known, result = by_names(assumptions), dict[str, str]()
     for name in names:
         assumption = known.get(name_key(name))
         if assumption is None:
@@ -51,7 +51,7 @@ def _spelt(assumptions: Sequence[Assumption], live: Sequence[Assumption], names:
             raise SimulationError(f"there is no assumption {name!r}", hint=hint)
         if assumption.frozen:
             raise SimulationError(f"the assumption {name!r} is frozen", hint="it is held at its cell's own value")
-        found[name] = assumption.name
-    if missing := [a.name for a in live if a.name not in found.values()]:
+        result[name] = assumption.name
+    if missing := [a.name for a in live if a.name not in result.values()]:
         raise SimulationError(f"no values for the assumption {missing[0]!r}", hint="give every live assumption")
-    return found
+    return result

@@ -75,9 +75,9 @@ def _circle(feeds: Sequence[Feed]) -> tuple[str, ...]:
 
     def walk(path: tuple[str, ...]) -> tuple[str, ...]:
         for book in fed.get(path[-1], ()):
-            found = path[path.index(book) :] if book in path else walk((*path, book))
-            if found:
-                return found
+            result = path[path.index(book) :] if book in path else walk((*path, book))
+            if result:
+                return result
         return ()
 
     return tuple(names.get(each, each) for each in next(filter(None, (walk((each,)) for each in fed)), ()))
@@ -129,8 +129,8 @@ class _Joining:
         tree: ir.Expression = cell if factor == 1.0 else ir.Binary("*", cell, ir.Number(factor))
         text = str(cell) if factor == 1.0 else f"{cell}*{factor!r}"
         self._fed[book, name_key(assumption.name)] = (feed, assumption, tree, text)
-        said = f"{assumption.name!r} takes {answer.name!r} of {feed.file} in each trial"
-        self._notices.append(Notice(said, _in_book(assumption.cell, book)))
+        messages = f"{assumption.name!r} takes {answer.name!r} of {feed.file} in each trial"
+        self._notices.append(Notice(messages, _in_book(assumption.cell, book)))
 
     def _book(self, name: str) -> str:
         """Return the key of a workbook that was named by its file name, or not at all.
@@ -140,12 +140,12 @@ class _Joining:
         """
         if name.casefold() in ("", self._model.path.name.casefold()):
             return ""
-        found = next((each for each in self._books if each.casefold() == name.casefold()), None)
-        if found is None:
+        text = next((each for each in self._books if each.casefold() == name.casefold()), None)
+        if text is None:
             message = f"no workbook of this run is called {name!r}, so it cannot be fed"
             known = [self._model.path.name, *filter(None, self._books)]
             raise SimulationError(message, where=name, hint=did_you_mean(name, known))
-        return found
+        return text
 
     def definitions(self) -> Definitions:
         """Return what all workbooks ask for together."""
@@ -199,9 +199,9 @@ class _Joining:
 
     def _of_source(self, source: CompiledModel, book: str, names: _Names) -> Definitions:
         """Return what a workbook that feeds asks for, in terms of the joined one's cells and names."""
-        found = self._left(source.definitions, book)
+        definitions = self._left(source.definitions, book)
         own: list[Assumption] = []
-        for each in found.assumptions:
+        for each in definitions.assumptions:
             here = _definition_in_book(each, book)
             other = self._drawn.get(name_key(each.names[-1]))
             if other is None:
@@ -213,39 +213,39 @@ class _Joining:
                 own.append(here)
             else:
                 self._share(here, each, book, other)
-        spelt = {name_key(a.name): self._drawn[name_key(a.names[-1])][1].name for a in found.assumptions}
+        spelt = {name_key(a.name): self._drawn[name_key(a.names[-1])][1].name for a in definitions.assumptions}
         asked = {name_key(feed.answer) for feed, _, _, _ in self._fed.values() if self._book(feed.file) == book}
-        for_answers = [f for f in found.forecast_filters if asked & set(map(name_key, f.only_for))]
-        filters = (*found.filters, *(replace(each, only_for=()) for each in for_answers))
+        for_answers = [f for f in definitions.forecast_filters if asked & set(map(name_key, f.only_for))]
+        filters = (*definitions.filters, *(replace(each, only_for=()) for each in for_answers))
         names_of = (
             [row.name for row in filters],
-            [row.name for row in found.evidence],
-            [row.name for row in found.checks],
+            [row.name for row in definitions.evidence],
+            [row.name for row in definitions.checks],
         )
         rows = dict.fromkeys(name for kind in names_of for name in kind)
         renamed = {name: names.free(name, book) for name in rows}
         return replace(
-            found,
+            definitions,
             assumptions=tuple(own),
             filters=tuple(_renamed(_definition_in_book(each, book), renamed) for each in filters),
-            checks=tuple(_renamed(_definition_in_book(each, book), renamed) for each in found.checks),
-            evidence=tuple(_renamed(_definition_in_book(each, book), renamed) for each in found.evidence),
-            correlations=tuple(self._ties(found, book, spelt)),
+            checks=tuple(_renamed(_definition_in_book(each, book), renamed) for each in definitions.checks),
+            evidence=tuple(_renamed(_definition_in_book(each, book), renamed) for each in definitions.evidence),
+            correlations=tuple(self._ties(definitions, book, spelt)),
             copulas=tuple(
                 replace(_definition_in_book(each, book), names=tuple(spelt[name_key(name)] for name in each.names))
-                for each in found.copulas
+                for each in definitions.copulas
             ),
-            notices=tuple(_of_book(each, book) for each in found.notices),
+            notices=tuple(_of_book(each, book) for each in definitions.notices),
             refused=(),
         )
 
-    def _ties(self, found: Definitions, book: str, spelt: Mapping[str, str]) -> Iterator[Any]:
+    def _ties(self, definitions: Definitions, book: str, spelt: Mapping[str, str]) -> Iterator[Any]:
         """Its correlations, but for those that another workbook has, too.
 
         Raises:
             DefinitionError: two workbooks correlate the same assumptions in two ways.
         """
-        for row in found.correlations:
+        for row in definitions.correlations:
             first, second = (spelt[name_key(name)] for name in (row.first, row.second))
             here = replace(_definition_in_book(row, book), first=first, second=second)
             other = self._tied.setdefault(frozenset((first, second)), here)
@@ -269,8 +269,8 @@ class _Joining:
             hint = "inputs of one name are one input: give both the same distribution and units, or other names"
             raise DefinitionError(message, where=here.row, hint=hint)
         self._shared[here.cell] = _in_book(first.cell, whose)
-        said = f"{there.name!r} is the same input in {whose or self._model.path.name} and {book}, and is drawn once"
-        self._notices.append(Notice(said, here.cell))
+        messages = f"{there.name!r} is the same input in {whose or self._model.path.name} and {book}, and is drawn once"
+        self._notices.append(Notice(messages, here.cell))
 
     def _fed_forecasts(self) -> Iterator[Forecast]:
         """Return what the fed assumptions are, as answers of the run."""
@@ -305,14 +305,14 @@ def _linked(source: CompiledModel, name: str, formulas: Mapping[Cell, CellConten
     """
     book = source.workbook
     read = {host_of(cell).sheet for cell in (*source.read, *source.trees, *(a.cell for a in source.assumptions))}
-    found: dict[str, Sheet] = {}
+    result: dict[str, Sheet] = {}
     for each in sorted(read):
         sheet = book.sheet_of(Cell(each, 1, 1))
         if sheet is not None:
             moved = f"[{name}]{each}"
             new = {cell[1:]: content for cell, content in formulas.items() if cell.sheet == moved}
-            found[moved] = replace(sheet, name=moved, cells={**sheet.cells, **new})
-    return LinkedBook(name, found)
+            result[moved] = replace(sheet, name=moved, cells={**sheet.cells, **new})
+    return LinkedBook(name, result)
 
 
 def _formula(text: str, cell: Cell) -> CellContent:
@@ -337,13 +337,13 @@ def _refuse_parts(source: CompiledModel, name: str) -> None:
 
 
 def _parts(tree: ir.Expression) -> list[ir.Expression]:
-    found: list[ir.Expression] = []
+    result: list[ir.Expression] = []
 
     def look(part: ir.Expression) -> None:
-        found.append(part)
+        result.append(part)
 
     substitute(tree, look)
-    return found
+    return result
 
 
 def _found(name: str, known: Mapping[str, Iterable[Any]], label: str) -> Any:
@@ -353,8 +353,8 @@ def _found(name: str, known: Mapping[str, Iterable[Any]], label: str) -> Any:
         SimulationError: none has.
     """
     for kind in known.values():
-        if (found := by_names(kind).get(name_key(name))) is not None:
-            return found
+        if (value := by_names(kind).get(name_key(name))) is not None:
+            return value
     names = [each.name for each in next(iter(known.values()))]
     message = f"there is no {' or '.join(known)} {name!r}"
     raise SimulationError(message, where=label, hint=did_you_mean(name, names) if names else None)
@@ -380,17 +380,17 @@ class _Names:
 
     def free(self, name: str, book: str) -> str:
         """Take the name, with the workbook where another one has it."""
-        found = f"{name} ({book})" if name_key(name) in self._taken else name
-        self._taken.add(name_key(found))
-        return found
+        text = f"{name} ({book})" if name_key(name) in self._taken else name
+        self._taken.add(name_key(text))
+        return text
 
 
 def _renamed(row: _T, names: Mapping[str, str]) -> _T:
     """Return a filter, check or item of evidence under its name in the joined model."""
-    found: Any = row
-    if isinstance(found, Filter) and found.evidence is not None:
-        found = replace(found, evidence=replace(found.evidence, name=names[found.evidence.name]))
-    renamed: _T = replace(found, name=names[found.name])
+    value: Any = row
+    if isinstance(value, Filter) and value.evidence is not None:
+        value = replace(value, evidence=replace(value.evidence, name=names[value.evidence.name]))
+    renamed: _T = replace(value, name=names[value.name])
     return renamed
 
 
@@ -420,19 +420,19 @@ def _tree_in_book(tree: ir.Expression | FormulaError, book: str) -> ir.Expressio
 
 def _definition_in_book(value: _T, book: str) -> _T:
     """Return a definition with all its cells in the joined workbook."""
-    found: Any = value
+    results: Any = value
     moved: Any = value
-    if isinstance(found, Cell):
-        moved = _in_book(found, book)
-    elif isinstance(found, Area):
-        moved = replace(found, sheet=f"[{book}]{found.sheet}")
-    elif isinstance(found, tuple):
-        moved = tuple(_definition_in_book(each, book) for each in found)
-    elif isinstance(found, Mapping):
-        moved = {key: _definition_in_book(each, book) for key, each in found.items()}
-    elif is_dataclass(found) and not isinstance(found, type):
-        names = [each.name for each in fields(found) if each.name not in _KEPT_AS_THEY_ARE]
-        moved = replace(found, **{name: _definition_in_book(getattr(found, name), book) for name in names})
+    if isinstance(results, Cell):
+        moved = _in_book(results, book)
+    elif isinstance(results, Area):
+        moved = replace(results, sheet=f"[{book}]{results.sheet}")
+    elif isinstance(results, tuple):
+        moved = tuple(_definition_in_book(each, book) for each in results)
+    elif isinstance(results, Mapping):
+        moved = {key: _definition_in_book(each, book) for key, each in results.items()}
+    elif is_dataclass(results) and not isinstance(results, type):
+        names = [each.name for each in fields(results) if each.name not in _KEPT_AS_THEY_ARE]
+        moved = replace(results, **{name: _definition_in_book(getattr(results, name), book) for name in names})
     result: _T = moved
     return result
 

@@ -39,11 +39,11 @@ def assumption_named(model: CompiledModel, name: str, *, drawn: bool = False) ->
     those = model.live if drawn else model.assumptions
     names = [a.name for a in those]
     known = by_names(those).get(name_key(name))
-    found = [known.name] if known else [each for each in names if keyword(each) == keyword(name)]
-    if len(found) == 1:
-        return found[0]
-    if found:
-        message = f"{name!r} may be {' or '.join(map(repr, found))}"
+    result = [known.name] if known else [each for each in names if keyword(each) == keyword(name)]
+    if len(result) == 1:
+        return result[0]
+    if result:
+        message = f"{name!r} may be {' or '.join(map(repr, result))}"
         raise SimulationError(message, hint="Give the name as it is spelt there; to with_ in a dict: {name: …}")
     if drawn:
         message, listed = f"no assumption that is drawn is called {name!r}", ", ".join(map(repr, names))
@@ -57,9 +57,9 @@ def forecast_named(model: CompiledModel, name: str) -> str:
     Raises:
         SimulationError: there is none.
     """
-    found = by_names(model.forecasts).get(name_key(name))
-    if found is None:
+    forecast = by_names(model.forecasts).get(name_key(name))
+    if forecast is None:
         raise SimulationError(
             f"there is no forecast {name!r}", hint=did_you_mean(name, [f.name for f in model.forecasts])
         )
-    return found.name
+    return forecast.name

@@ -34,37 +34,37 @@ def calculate_labels(workbook: Workbook) -> Workbook:
     A notice names what differs from the saved value.
     """
     tables = [table for table in workbook.tables if table.name.casefold().startswith(_TABLES)]
-    said = [cell for table in tables for cell in _said(table)]
-    missing = [cell for cell in said if workbook.content(cell).is_uncalculated]
+    messages = [cell for table in tables for cell in _said(table)]
+    missing = [cell for cell in messages if workbook.content(cell).is_uncalculated]
     values = _calculated(workbook, missing) if missing else {}
-    found = {cell: value for cell, value in values.items() if isinstance(value, str | bool)}
-    stale = _stale_values(workbook, said) if workbook.may_be_stale else {}
+    result = {cell: value for cell, value in values.items() if isinstance(value, str | bool)}
+    stale = _stale_values(workbook, messages) if workbook.may_be_stale else {}
     if not (missing or stale):
         return workbook
     written: dict[str, dict[tuple[int, int], CellContent]] = {}
-    for cell, value in {**found, **stale}.items():
+    for cell, value in {**result, **stale}.items():
         at = cell.row, cell.column
         written.setdefault(cell.sheet, {})[at] = replace(workbook.sheets[cell.sheet].cells[at], value=value)
     notices = [_notice(cell, workbook.content(cell).value, value) for cell, value in stale.items()]
     return replace(workbook, sheets=with_cells(workbook.sheets, written), notices=(*workbook.notices, *notices))
 
 
-def _stale_values(workbook: Workbook, said: Iterable[Cell]) -> dict[Cell, CellValue]:
+def _stale_values(workbook: Workbook, messages: Iterable[Cell]) -> dict[Cell, CellValue]:
     """Say what formulas of the tables give that is not what the file says."""
-    contents = {cell: workbook.content(cell) for cell in said}
+    contents = {cell: workbook.content(cell) for cell in messages}
     cells = [cell for cell, each in contents.items() if each.formula is not None and each.value is not None]
-    found = _calculated(workbook, cells) if cells else {}
-    return {cell: value for cell, value in found.items() if _differs(contents[cell].value, value)}
+    result = _calculated(workbook, cells) if cells else {}
+    return {cell: value for cell, value in result.items() if _differs(contents[cell].value, value)}
 
 
-def _differs(saved: CellValue, found: CellValue) -> bool:
-    if isinstance(saved, float) and isinstance(found, float):
-        return not math.isclose(saved, found, rel_tol=1e-9, abs_tol=1e-300)
-    return type(saved) is not type(found) or saved != found
+def _differs(saved: CellValue, value: CellValue) -> bool:
+    if isinstance(saved, float) and isinstance(value, float):
+        return not math.isclose(saved, value, rel_tol=1e-9, abs_tol=1e-300)
+    return type(saved) is not type(value) or saved != value
 
 
-def _notice(cell: Cell, saved: CellValue, found: CellValue) -> Notice:
-    shown = [repr(value) if isinstance(value, str) else as_text(value) for value in (saved, found)]
+def _notice(cell: Cell, saved: CellValue, result: CellValue) -> Notice:
+    shown = [repr(value) if isinstance(value, str) else as_text(value) for value in (saved, result)]
     message = f"the file says {shown[0]}, but the formula gives {shown[1]}, which is used"
     return Notice(f"{message}: let Excel calculate the workbook, and save it", cell)
 
@@ -81,7 +81,7 @@ def _calculated(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, CellV
     except FormulaError:
         if len(cells) == 1:
             return {}
-        return {found: value for cell in cells for found, value in _calculated(workbook, [cell]).items()}
+        return {result: value for cell in cells for result, value in _calculated(workbook, [cell]).items()}
     values = {cell: lowering.value(cell) for cell in cells if not lowering.is_saved(cell)}
     known = {cell: value.objects().ravel()[0] for cell, value in values.items() if value is not None}
     return {cell: value for cell, value in known.items() if not isinstance(value, ErrorCode)}

@@ -151,9 +151,9 @@ def _without_dashes(model: CompiledModel) -> CompiledModel:
         return model
     definitions = model.definitions
     left = tuple(each for each in definitions.forecasts if each.name not in waiting)
-    said = f"forecasts whose cells are a dash, and which wait for inputs: {list_of([*map(repr, sorted(waiting))])}"
+    message = f"forecasts whose cells are a dash, and which wait for inputs: {list_of([*map(repr, sorted(waiting))])}"
     first = next(each for each in definitions.forecasts if each.name in waiting)
-    notices = (*definitions.notices, Notice(said, first.row))
+    notices = (*definitions.notices, Notice(message, first.row))
     filters = tuple(
         replace(each, only_for=tuple(name for name in each.only_for if name not in waiting))
         for each in definitions.forecast_filters
@@ -183,11 +183,11 @@ def filter_faults(model: CompiledModel) -> list[DefinitionError]:
     evaluator = NumpyProgram.of(model.lowering, targets, [], drawn).evaluator(_DRAWN)
     base = {name: np.full(1, np.nan if base is None else base) for name, base in model.bases.items()}
     base |= model.certain(1)
-    found = dict(_faults(filters, evaluator.filters(base, 1), "at the base case", texts=True))
-    if any(not filter_limits(each) and each.cell not in found for each in filters):
+    result = dict(_faults(filters, evaluator.filters(base, 1), "at the base case", texts=True))
+    if any(not filter_limits(each) and each.cell not in result for each in filters):
         columns = evaluator.filters(model.sampler(0, _DRAWN).draw(0), _DRAWN)
-        found = {**dict(_faults(filters, columns, "in a trial", texts=False)), **found}
-    return [found[each.cell] for each in filters if each.cell in found]
+        result = {**dict(_faults(filters, columns, "in a trial", texts=False)), **result}
+    return [result[each.cell] for each in filters if each.cell in result]
 
 
 def _may_be_text(model: CompiledModel, filter_: Filter) -> bool:

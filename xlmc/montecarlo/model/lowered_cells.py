@@ -32,15 +32,15 @@ def lower_needed(workbook: Workbook, definitions: Definitions, *, one_trial: boo
     definitions = replace(definitions, assumptions=(*definitions.assumptions, *chances_of(definitions.filters)))
     inputs = {a.cell: a.name for a in definitions.assumptions if not a.frozen}
     frozen = {a.cell: a.base for a in definitions.assumptions if a.frozen and a.base is not None}
-    found: list[Needed] = []
+    results: list[Needed] = []
 
     def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
-        found.append(find_needed(workbook, definitions, more))
-        return Lowering(found[-1].graph, inputs, frozen, one_trial=one_trial)
+        results.append(find_needed(workbook, definitions, more))
+        return Lowering(results[-1].graph, inputs, frozen, one_trial=one_trial)
 
     lowering = lower_until_complete(lower)
     lowering.refuse_cells_beyond()
-    needed = found[-1]
+    needed = results[-1]
     if lowering.led_to:
         named = {a.name: a for a in definitions.assumptions}
         live = [named[name] for name in needed.live]  # in this order, on which correlated draws depend

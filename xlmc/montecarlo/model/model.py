@@ -111,8 +111,8 @@ class CompiledModel:
     @property
     def _parameter_cells(self) -> set[Cell]:
         """The cells that compute numbers of what is drawn and limits of filters, which the model has."""
-        found = {cell for each in self.live for cell in each.formulas.values()}
-        return found | {cell for each in (*self.filters, *self.forecast_filters) for cell in each.formulas.values()}
+        cells = {cell for each in self.live for cell in each.formulas.values()}
+        return cells | {cell for each in (*self.filters, *self.forecast_filters) for cell in each.formulas.values()}
 
     def _compile(self, workbook: Workbook, definitions: Definitions, path: Path) -> None:
         """Make the nodes of what the definitions ask for, and all that depends on them."""
@@ -140,17 +140,17 @@ class CompiledModel:
         named, chances = {a.name: a for a in (*self.assumptions, *self.chances)}, {a.name for a in self.chances}
         live: list[Assumption] = []
         draws: dict[str, Draw] = {}
-        found: dict[str, Bounds] = {}
+        result: dict[str, Bounds] = {}
         for name in self.needed.live:
             draws[name] = draw = known.get(name) or draw_of(named[name], self.lowering)
             if draw.ends is not None:
-                found[name] = draw.ends
+                result[name] = draw.ends
             if name not in chances:
                 live.append(named[name])
         self.live: tuple[Assumption, ...] = tuple(live)
         self.bases: Mapping[str, float | None] = {a.name: a.base for a in live}
         self.draws: Mapping[str, Draw] = draws
-        self._ends = found
+        self._ends = result
         rows = definitions.correlations
         tied = {name for row in rows for name in (row.first, row.second)}
         self._correlated = {name: draw for name, draw in self.draws.items() if name in tied}
@@ -194,18 +194,18 @@ class CompiledModel:
         if len(self.lowering.dag.nodes) > (1 + _MOST_GROWN) * self._nodes:
             self._make_anew()
         if not asks_for_the_same(own, definitions, frozenset(self.needed.live)):
-            found = type(self)(workbook, definitions, self.path)
-            found._folded = self._folded
-            return found
-        found = copy(self)
-        found.workbook = workbook
+            result = type(self)(workbook, definitions, self.path)
+            result._folded = self._folded
+            return result
+        result = copy(self)
+        result.workbook = workbook
         same = {old.name for old, new in zip(own.assumptions, definitions.assumptions, strict=True) if old is new}
-        found._define(definitions, {name: draw for name, draw in self.draws.items() if name in same})
-        if found.filter_targets != self.filter_targets:
-            found._programs = {}
-            found._check_targets()
-        found._take_notices()
-        return found
+        result._define(definitions, {name: draw for name, draw in self.draws.items() if name in same})
+        if result.filter_targets != self.filter_targets:
+            result._programs = {}
+            result._check_targets()
+        result._take_notices()
+        return result
 
     def _make_anew(self) -> None:
         """Leave the nodes that changed limits added to the models that have them, and go on with nodes of one's own."""
@@ -214,9 +214,9 @@ class CompiledModel:
     def _sources(self) -> list[tuple[str, Cell, str]]:
         """Return what is needed of assumptions and filters, the row of each, and its source or reason."""
         idle = {a.name for a in self.needed.idle}
-        found = [(f"{a.name!r}", a.row, a.source) for a in self.assumptions if a.name not in idle]
+        result = [(f"{a.name!r}", a.row, a.source) for a in self.assumptions if a.name not in idle]
         filters = (*self.filters, *self.forecast_filters)
-        return found + [(f"{each.name!r} (a filter)", each.row, each.because) for each in filters]
+        return result + [(f"{each.name!r} (a filter)", each.row, each.because) for each in filters]
 
     def _moving(self) -> set[Cell]:
         """Return the cells of the live assumptions whose range has more than one value, as far as it is known."""
@@ -234,8 +234,8 @@ class CompiledModel:
     def evidence(self) -> tuple[Evidence, ...]:
         """The rows of `xlmc_evidence`, with numbers where they are used; those that are not used among them."""
         used = {each.name: each.evidence for each in self.filters if each.evidence is not None}
-        found = (each if not each.used else used.get(each.name) for each in self.definitions.evidence)
-        return tuple(each for each in found if each is not None)
+        result = (each if not each.used else used.get(each.name) for each in self.definitions.evidence)
+        return tuple(each for each in result if each is not None)
 
     def certain(self, n: int) -> dict[str, NDArray[np.float64]]:
         """Name of each chance -> `(n,)` the number that keeps every trial, for whoever draws the assumptions alone."""
@@ -244,8 +244,8 @@ class CompiledModel:
     @property
     def read(self) -> frozenset[Cell]:
         """Every cell that the forecasts, filters and checks read, blank cells of ranges among them."""
-        found = self.lowering.read | (frozenset() if self._checks is None else self._checks.read)
-        return found | cells_read(self.definitions, found)
+        cells = self.lowering.read | (frozenset() if self._checks is None else self._checks.read)
+        return cells | cells_read(self.definitions, cells)
 
     @property
     def tabulated(self) -> frozenset[Cell]:
@@ -362,7 +362,7 @@ class CompiledModel:
         """
         wanted = np.atleast_1d(np.asarray(probabilities, np.float64))
         frozen: dict[str, NDArray[np.float64]] = {}
-        found: dict[str, NDArray[np.float64]] = {}
+        result: dict[str, NDArray[np.float64]] = {}
         needs_medians = len(self.needed.stages) > 1
         for number, stage in enumerate(self.needed.stages):
             varying: Mapping[Cell, NDArray[np.float64]] = {}
@@ -372,10 +372,10 @@ class CompiledModel:
                 base = self.bases[name]
                 if names is None or name in names or (base is None and needs_medians):
                     values = self.draws[name].percentiles(np.append(wanted, 0.5), varying)
-                    found[name], frozen[name] = values[:-1], values[-1:]
+                    result[name], frozen[name] = values[:-1], values[-1:]
                 if base is not None:
                     frozen[name] = np.full(1, base)
-        return found
+        return result
 
     def program_of(self, filters: Sequence[Target]) -> Program:
         """Other targets instead of the filters, and the forecasts, compiled for the engine `numpy`."""
@@ -398,13 +398,13 @@ class CompiledModel:
         """The numbers of the forecasts whose answers are texts: the row says so, or each of some trials gives one."""
         kinds = [self.lowering.dag.types[self.lowering.target(target)] for target in self._forecast_targets]
         asked = [(number, each.kind) for number, each in enumerate(self.forecasts)]
-        found = {number for number, kind in asked if kind is StatedAs.CATEGORY}
+        result = {number for number, kind in asked if kind is StatedAs.CATEGORY}
         unsure = [n for n, kind in asked if kind is None and kinds[n] not in (Kind.NUMBER, Kind.LOGICAL)]
         if unsure:
             targets = [self._forecast_targets[number] for number in unsure]
             columns = self.evaluator(targets, _TRIED).filters(self.sampler(0, _TRIED).draw(0), _TRIED)
-            found |= {number for number, column in zip(unsure, columns, strict=True) if are_texts(column)}
-        return tuple(sorted(found))
+            result |= {number for number, column in zip(unsure, columns, strict=True) if are_texts(column)}
+        return tuple(sorted(result))
 
     @cached_property
     def two_valued(self) -> frozenset[str]:

@@ -26,14 +26,14 @@ def example_notices(sources: Iterable[tuple[str, Cell, str]]) -> list[Notice]:
     Args:
         sources: what each is the source of, the row where it stands, and what it says.
     """
-    found = [(named, row) for named, row, text in sources if _EXAMPLE.match(text.strip())]
-    if not found:
+    result = [(named, row) for named, row, text in sources if _EXAMPLE.match(text.strip())]
+    if not result:
         return []
-    named = ", ".join(name for name, _ in found[:_MOST_NAMED])
-    more = f" and {len(found) - _MOST_NAMED} more" if len(found) > _MOST_NAMED else ""
-    begins = "source still says" if len(found) == 1 else f"{len(found)} sources still say"
+    named = ", ".join(name for name, _ in result[:_MOST_NAMED])
+    more = f" and {len(result) - _MOST_NAMED} more" if len(result) > _MOST_NAMED else ""
+    begins = "source still says" if len(result) == 1 else f"{len(result)} sources still say"
     message = f'{begins} "Example": {named}{more}. Write there what each number of this case rests on'
-    return [Notice(message, found[0][1])]
+    return [Notice(message, result[0][1])]
 
 
 def heavy_notices(heavy: Iterable[Assumption]) -> Iterator[Notice]:
@@ -86,8 +86,8 @@ def _reached(graph: Graph, moving: Set[Cell]) -> set[Cell]:
     """Return the cells that depend on a moving one."""
     if graph.circles:
         return set(downstream(graph.needs, moving))
-    found = set(moving)
+    cells = set(moving)
     for cell in graph.formulas:  # each after the cells it needs
-        if not found.isdisjoint(graph.needs[cell]):
-            found.add(cell)
-    return found
+        if not cells.isdisjoint(graph.needs[cell]):
+            cells.add(cell)
+    return cells

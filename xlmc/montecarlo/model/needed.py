@@ -66,11 +66,11 @@ class Needed:
 
         calls = [a.cell for a in self.idle if isinstance(a.cell, InFormula)]
         rows = [a for a in self.idle if not isinstance(a.cell, InFormula) and not a.frozen]
-        found = [notice(f"the assumption {a.name!r}", a.cell) for a in rows]
+        result = [notice(f"the assumption {a.name!r}", a.cell) for a in rows]
         if calls:
             many = f"{count_text(len(calls))} draws in cells, of which this is the first"
-            found.append(notice("this draw" if len(calls) == 1 else many, calls[0]))
-        return tuple(found)
+            result.append(notice("this draw" if len(calls) == 1 else many, calls[0]))
+        return tuple(result)
 
 
 def find_needed(

@@ -127,11 +127,11 @@ class _Body:
             name: np.array(np.broadcast_to(numbers, (n,)), np.float64)
             for name, (numbers, _) in zip(self.inputs, read, strict=True)
         }
-        found = self.columns(columns, n)
+        result = self.columns(columns, n)
         errors = np.zeros(1, np.uint8)
         for _, codes in read:
             errors = np.where(errors > 0, errors, codes).astype(np.uint8)
-        grid = np.stack(found, axis=1)[:, None, :]
+        grid = np.stack(result, axis=1)[:, None, :]
         return Value.of_numbers(grid, np.where(errors[:, None, None] > 0, errors[:, None, None], unbox_errors(grid)))
 
     def columns(self, given: Mapping[str, Floats], n: int) -> list[Floats]:
@@ -222,16 +222,20 @@ def _rows(
         DefinitionError: a key is unknown, or it is no mapping.
     """
     rows: Mapping[str, Any] = given if isinstance(given, Mapping) else {name: {} for name in given}
-    found: dict[str, dict[str, Any]] = {}
-    for name, said in rows.items():
-        if isinstance(said, str) and single:
-            said = {single: said}
-        if not isinstance(said, Mapping) or not said.keys() <= columns.keys():
-            extra = f" {sorted(map(str, said.keys() - columns.keys()))}" if isinstance(said, Mapping) else f" {said!r}"
+    result: dict[str, dict[str, Any]] = {}
+    for name, message in rows.items():
+        if isinstance(message, str) and single:
+            message = {single: message}
+        if not isinstance(message, Mapping) or not message.keys() <= columns.keys():
+            extra = (
+                f" {sorted(map(str, message.keys() - columns.keys()))}"
+                if isinstance(message, Mapping)
+                else f" {message!r}"
+            )
             hint = f"Give a dict with some of {', '.join(columns)}"
             raise DefinitionError(f"The {what} {name!r} cannot have{extra}", hint=hint)
-        found[name] = dict(said)
-    return found
+        result[name] = dict(message)
+    return result
 
 
 def _refuse_nothing(assumptions: Mapping[str, Distribution], forecasts: Mapping[str, object]) -> None:
@@ -306,12 +310,12 @@ def _written(
         for name, each in assumptions.items()
     ]
     answers = [
-        {"Name": name, "Value": base[name], **_headed(said, _FORECAST), COMPUTED_BY: by}
-        for name, said in forecasts.items()
+        {"Name": name, "Value": base[name], **_headed(message, _FORECAST), COMPUTED_BY: by}
+        for name, message in forecasts.items()
     ]
     tests = [
-        {"Name": name, "Value": base[name], **_headed(said, _FILTER), COMPUTED_BY: by, "Use": None}
-        for name, said in filters.items()
+        {"Name": name, "Value": base[name], **_headed(messages, _FILTER), COMPUTED_BY: by, "Use": None}
+        for name, messages in filters.items()
     ]
     pairs = [{"First": a, "Second": b, "Correlation": value} for (a, b), value in correlations.items()]
     stream = io.BytesIO()
@@ -349,8 +353,8 @@ def _written(
     return stream.getvalue(), tuple(places[0]), named
 
 
-def _headed(said: Mapping[str, Any], headings: Mapping[str, str]) -> dict[str, Any]:
-    return {heading: said.get(key) for key, heading in headings.items()}
+def _headed(message: Mapping[str, Any], headings: Mapping[str, str]) -> dict[str, Any]:
+    return {heading: message.get(key) for key, heading in headings.items()}
 
 
 def _write(sheet: Any, row: int, column: int, value: object) -> None:

@@ -77,11 +77,11 @@ class Unknown:
         both = self.both.evaluated(given, max((values.size for values in given.values()), default=1 << 12))
 
         def difference(at: Floats, trials: NDArray[np.intp] | None) -> Floats:
-            found, start = np.empty(at.size), 0
+            result, start = np.empty(at.size), 0
             for value, to in both(at, trials):
-                np.subtract(value, to, out=found[start : start + value.size])
+                np.subtract(value, to, out=result[start : start + value.size])
                 start += value.size
-            return found
+            return result
 
         return difference
 
@@ -140,13 +140,13 @@ class _Body:
 
     def _find(self, given: Mapping[str, Floats], errors: Codes, low: Floats, high: Floats) -> tuple[Floats, Codes]:
         m = errors.size
-        found = find_roots(self.unknown.evaluated(given), low, high)
-        counts = found.counts(m)
+        roots = find_roots(self.unknown.evaluated(given), low, high)
+        counts = roots.counts(m)
         codes = np.where(counts == 0, np.uint8(ErrorCode.NA), np.uint8(0))
         if self.root is None:
             codes = np.where(counts > 1, np.uint8(ErrorCode.NUM), codes)
         codes = np.where(errors > 0, errors, codes).astype(np.uint8)
-        solved = np.where(codes > 0, 0.0, found.chosen(m, last=self.root is Which.LAST))
+        solved = np.where(codes > 0, 0.0, roots.chosen(m, last=self.root is Which.LAST))
         return solved, codes
 
 
@@ -221,16 +221,16 @@ def with_solved_cells(workbook: Workbook, definitions: Definitions) -> Definitio
     """
     if all(solve.by in definitions.rewritten for solve in definitions.solves):
         return definitions
-    left, found = list(definitions.solves), definitions
+    left, result = list(definitions.solves), definitions
     while left:
-        ready = next((each for each in left if not _awaits(workbook, found, each, left)), None)
+        ready = next((each for each in left if not _awaits(workbook, result, each, left)), None)
         if ready is None:
             names = " and ".join(repr(each.name) for each in left)
             hint = "Solve for one of the cells here, and compute the other by a formula"
             raise DefinitionError(f"{names} need each other's solutions", where=left[0].row, hint=hint)
         left.remove(ready)
-        found = replace(found, rewritten={**found.rewritten, ready.by: _call(workbook, found, ready)})
-    return found
+        result = replace(result, rewritten={**result.rewritten, ready.by: _call(workbook, result, ready)})
+    return result
 
 
 def _awaits(workbook: Workbook, definitions: Definitions, solve: Solve, left: Sequence[Solve]) -> bool:

@@ -72,10 +72,10 @@ def _saved(workbook: Workbook, cells: Iterable[Cell]) -> dict[Cell, float]:
     """Return the values that the file holds; none where they may be older than the formulas."""
     if workbook.may_be_stale:
         return {}
-    found = {cell: workbook.content(cell).value for cell in cells}
+    result = {cell: workbook.content(cell).value for cell in cells}
     return {
         cell: float(value)
-        for cell, value in found.items()
+        for cell, value in result.items()
         if isinstance(value, int | float) and not isinstance(value, bool)
     }
 

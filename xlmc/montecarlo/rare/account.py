@@ -148,23 +148,23 @@ class RareAccount:
     @property
     def warnings(self) -> list[str]:
         """Why the answer must not be used as it is."""
-        found = []
+        result = []
         if self._disagree:
-            found.append(
+            result.append(
                 "the search for rare trials has a probability of acceptance of "
                 f"{number_text(self.searched, 2)}, and the trials "
                 f"that it led to have {number_text(self.acceptance.value, 2)}: part of the accepted "
                 "region may be missing"
             )
         if self.missed > MOST_MISSED * self.acceptance.value:
-            found.append(
+            result.append(
                 "accepted trials were met in a part of the region that the search could not describe: "
                 f"the probability of acceptance is at least {number_text(self.acceptance.value, 2)}, "
                 "and that part, from which "
                 f"there are no trials here, may add {number_text(self.missed, 2)}"
             )
         if self.implausible:
-            found.append(
+            result.append(
                 f"of {counted_text(self.plain, 'plain trial')} {count_text(self.plain_accepted)} "
                 f"{'was' if self.plain_accepted == 1 else 'were'} accepted, where "
                 f"{number_text(self.plain * self.acceptance.value, 2)} were to be expected: the "
@@ -173,20 +173,20 @@ class RareAccount:
             )
         rare = self.learning + self.proposals + self.checked
         if self.lost > MOST_LOST * rare:
-            found.append(
+            result.append(
                 f"{count_text(self.lost)} of the {count_text(rare)} trials of the search were lost to errors in cells"
             )
         if self.faulty > MOST_LOST * self.kept:
-            found.append(
+            result.append(
                 f"a forecast is an error in {count_text(self.faulty)} of the {count_text(self.kept)} accepted trials"
             )
-        return found
+        return result
 
 
-def probability_text(found: RareAccount) -> str:
+def probability_text(account: RareAccount) -> str:
     """`(1.002 ± 0.004)e-06`, or `at least` that."""
-    text = format_estimate(found.acceptance.value, found.acceptance.error)
-    return f"at least {text}" if found.at_least else text
+    text = format_estimate(account.acceptance.value, account.acceptance.error)
+    return f"at least {text}" if account.at_least else text
 
 
 def _chance_of_more(count: int, expected: float) -> float:

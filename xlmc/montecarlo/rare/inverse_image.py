@@ -50,8 +50,8 @@ def negated(value: Spans) -> Spans:
 def factor(value: Spans, o: Floats) -> Spans:
     """Invert s · o."""
     with np.errstate(all="ignore"):
-        found = union_of_pairs([_ordered(value.low / o, value.high / o, (value.low <= value.high) & (o != 0.0))])
-    return choose(o == 0.0, _anything(value), found)
+        spans = union_of_pairs([_ordered(value.low / o, value.high / o, (value.low <= value.high) & (o != 0.0))])
+    return choose(o == 0.0, _anything(value), spans)
 
 
 def numerator(value: Spans, o: Floats) -> Spans:
@@ -75,14 +75,14 @@ def line(value: Spans, start: Floats, slope: Floats) -> Spans:
 def ratio(value: Spans, a: Floats, b: Floats, c: Floats, d: Floats) -> Spans:
     """Invert (a + b·s) / (c + d·s)."""
     above, below = _not_negative(c, d), _not_negative(-c, -d)
-    found = []
+    spans = []
     for low, high in zip(value.low, value.high, strict=True):
         some = (low <= high) & (low < np.inf) & (high > -np.inf)
         full, low, high = Spans.where(some), np.where(some, low, 0.0), np.where(some, high, 0.0)
         over, under = _beyond(a, b, c, d, low), _beyond(-a, -b, -c, -d, high)
         reversed_ = _beyond(-a, -b, -c, -d, low), _beyond(a, b, c, d, high)
-        found += [intersection([full, above, over, under]), intersection([full, below, *reversed_])]
-    return union(found)
+        spans += [intersection([full, above, over, under]), intersection([full, below, *reversed_])]
+    return union(spans)
 
 
 def _beyond(a: Floats, b: Floats, c: Floats, d: Floats, end: Floats) -> Spans:

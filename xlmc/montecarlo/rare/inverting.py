@@ -92,11 +92,11 @@ class Inverting:
         if not isinstance(of, Together):
             return None
         parts = [self.region(part) for part in of.parts]
-        found = [part for part in parts if part is not None]
-        if not found or (not of.every and len(found) < len(parts)):
+        result = [part for part in parts if part is not None]
+        if not result or (not of.every and len(result) < len(parts)):
             return None
         together = intersection if of.every else union
-        return lambda known: together([part(known) for part in found])
+        return lambda known: together([part(known) for part in result])
 
     def _comparison(self, holds: Target) -> Region | None:
         tree, cell = holds.tree, holds.cell
@@ -118,12 +118,12 @@ class Inverting:
             return None
         index, endless = self._known(bound, cell), np.full(1, -np.inf if below else np.inf)
 
-        def found(known: Known) -> Spans:
+        def result(known: Known) -> Spans:
             end = known[index]
             far = np.broadcast_to(endless, end.shape)
             return undo(Spans.between(far, end) if below else Spans.between(end, far), known)
 
-        return found
+        return result
 
     def _known(self, tree: ir.Expression, cell: Cell) -> int:
         """Return the place in which the number that a tree gives will be known."""
@@ -258,8 +258,8 @@ class Inverting:
     def _line(self, tree: ir.Expression, x: Cell) -> _Pair | None:
         """Return the formulas a and b of a + b·x; None if the tree is no such line, or a long one."""
         steps = count()
-        found = self._line_of(tree, x, steps)
-        return found if next(steps) <= _MOST_STEPS else None
+        expression = self._line_of(tree, x, steps)
+        return expression if next(steps) <= _MOST_STEPS else None
 
     def _line_of(self, tree: ir.Expression, x: Cell, steps: Iterator[int]) -> _Pair | None:
         line = partial(self._line_of, x=x, steps=steps)

@@ -77,22 +77,22 @@ class Layered:
 
     def uniforms(self, points: Floats) -> Floats:
         """(n, d) the uniforms of the trials that points stand for."""
-        found = uniforms_of(points)
-        for part in self._blocks(found):
+        values = uniforms_of(points)
+        for part in self._blocks(values):
             for layer in self.layers:
                 draws, n = self._drawing.draw_at(part)
                 part[:, layer.row] = layer.rearranged(draws, n).uniform_at(part[:, layer.row])
-        return found
+        return values
 
     def points(self, uniforms: Floats) -> Floats:
         """(n, d) the points that stand for trials with these uniforms."""
-        found = points_of(uniforms)
-        for start, part in zip(range(0, len(found), self._drawing.block), self._blocks(uniforms), strict=True):
+        values = points_of(uniforms)
+        for start, part in zip(range(0, len(values), self._drawing.block), self._blocks(uniforms), strict=True):
             for layer in self.layers:
                 draws, n = self._drawing.draw_at(part)
                 positions = layer.rearranged(draws, n).position_of(part[:, layer.row])
-                found[start : start + n, layer.row] = _normal(positions)
-        return found
+                values[start : start + n, layer.row] = _normal(positions)
+        return values
 
     def _blocks(self, rows: Floats) -> list[Floats]:
         return [rows[start : start + self._drawing.block] for start in range(0, len(rows), self._drawing.block)]
@@ -103,11 +103,11 @@ class Layered:
         parts = [self._within(part) for part in self._blocks(uniforms)]
         beyond = np.concatenate([np.empty(0), *(part for part, _ in parts)])
         outside = np.concatenate([np.empty(0, bool), *(part for _, part in parts)])
-        found = inner(uniforms)
+        values = inner(uniforms)
         if inner == self._function.distance_at:
-            found = np.log1p(found)
-        nearest = np.maximum(found, np.log1p(beyond))
-        return np.where(outside | (found >= OUTSIDE), found + OUTSIDE, nearest)
+            values = np.log1p(values)
+        nearest = np.maximum(values, np.log1p(beyond))
+        return np.where(outside | (values >= OUTSIDE), values + OUTSIDE, nearest)
 
     def _within(self, uniforms: Floats) -> tuple[Floats, NDArray[np.bool_]]:
         """How far the positions of a block are beyond the layers, (n,), and where there is nothing to be accepted.

@@ -105,13 +105,13 @@ def layers_of(model: CompiledModel, filters: Sequence[LimitState], drawing: Draw
         uniforms: (n, d) of plain trials to look at, a block of them at most.
     """
     looking = _Looking(model, filters, drawing, uniforms)
-    found = list[Layer]()
-    while len(found) < _MOST_LAYERS:
-        best = looking.best({layer.cell for layer in found})
+    layers = list[Layer]()
+    while len(layers) < _MOST_LAYERS:
+        best = looking.best({layer.cell for layer in layers})
         if best is None:
             break
-        found.insert(0, best)
-    return found
+        layers.insert(0, best)
+    return layers
 
 
 class _Looking:
@@ -143,13 +143,13 @@ class _Looking:
         """
         moved = set[Cell]().union(*(self._moved[cell] for cell in taken))
         free = [part for part in self._parts if not any(_meets(tree, moved) for tree in _trees(part))]
-        found = [
+        result = [
             each
             for assumption in self._candidates
             if assumption.cell not in taken
             for each in self._layers(assumption, free)
         ]
-        return max(found, key=lambda each: each[0], default=(0.0, None))[1]
+        return max(result, key=lambda each: each[0], default=(0.0, None))[1]
 
     def _layers(self, assumption: Assumption, parts: Sequence[LimitState]) -> Iterator[tuple[float, Layer]]:
         """Yield the layers that some of the parts leave an assumption, and how even their chances are."""
@@ -168,9 +168,9 @@ class _Looking:
             return
         spans = [region(known) for region in regions]
         for taken in _subsets(len(regions)):
-            found = self._judged(draw, intersection([spans[i] for i in taken]))
-            if found is not None:
-                even, usual = found
+            pair = self._judged(draw, intersection([spans[i] for i in taken]))
+            if pair is not None:
+                even, usual = pair
                 chosen = tuple(regions[i] for i in taken)
                 yield even, Layer(assumption.name, assumption.cell, row, draw, chosen, evaluator, usual)
 
@@ -192,15 +192,15 @@ class _Looking:
 
     def _gates(self, cell: Cell) -> list[Cell]:
         """Cells, each of which is all that reads the one before, the first all that reads an assumption."""
-        found = [cell]
+        cells = [cell]
         asked = {cell for part in self._parts for cell in _cells(part)}
         formulas = self._model.needed.graph.formulas
-        while found[-1] not in asked:
-            readers = [each for each in self._moved[cell] if each in formulas and found[-1] in self._read(each)]
+        while cells[-1] not in asked:
+            readers = [each for each in self._moved[cell] if each in formulas and cells[-1] in self._read(each)]
             if len(readers) != 1:
                 break
-            found += readers
-        return found[1:]
+            cells += readers
+        return cells[1:]
 
     def _read(self, cell: Cell) -> set[Cell]:
         """Return what a formula cell reads of formula cells and inputs."""
@@ -219,14 +219,14 @@ class _Looking:
 
     def _downstream(self, cell: Cell) -> set[Cell]:
         """Return what varies with an assumption, it and other assumptions among them."""
-        found, size = {cell}, 0
-        while len(found) > size:
-            size = len(found)
+        cells, size = {cell}, 0
+        while len(cells) > size:
+            size = len(cells)
             for each in self._formulas:
-                if not found.isdisjoint(self._read(each)):
-                    found.add(each)
-            found |= {a.cell for a in self._model.live if not found.isdisjoint(a.cells)}
-        return found
+                if not cells.isdisjoint(self._read(each)):
+                    cells.add(each)
+            cells |= {a.cell for a in self._model.live if not cells.isdisjoint(a.cells)}
+        return cells
 
 
 def _rearranged(draw: Draw, spans: Spans) -> Rearranged:

@@ -167,15 +167,15 @@ def learn(
         known: trials that were drawn before; those that were accepted are evidence.
         strata: distances of parts of all trials, whose populations go apart; by default all together.
     """
-    found: list[Descent] = []
+    descents: list[Descent] = []
     apart = strata or (distance,)
     population, first = (max(whole // len(apart), least) for whole, least in ((_POPULATION, 512), (_FIRST, 8_192)))
     for each in apart:
         for _ in range(_DESCENTS):
-            found.append(descend(each, dimensions, random, population=population, first=first))
-            say(sum(done.evaluations for done in found))
-    learned = Learned(tuple(found), (), tuple(known), sum(each.evaluations for each in found))
-    if not any(each.reached for each in found):
+            descents.append(descend(each, dimensions, random, population=population, first=first))
+            say(sum(done.evaluations for done in descents))
+    learned = Learned(tuple(descents), (), tuple(known), sum(each.evaluations for each in descents))
+    if not any(each.reached for each in descents):
         if not any(len(each.points) for each in known):
             return learned
         learned = _explored(distance, learned, join_evidence(known), random)
@@ -192,10 +192,10 @@ def learn_again(
 
 
 def search_on(
-    distance: Distance, learned: Learned, found: Evidence, random: np.random.Generator, say: Say, most: float
+    distance: Distance, learned: Learned, evidence: Evidence, random: np.random.Generator, say: Say, most: float
 ) -> Learned:
     """Search on from accepted trials that lie where nothing was learned."""
-    learned = _explored(distance, learned, found, random)
+    learned = _explored(distance, learned, evidence, random)
     return _refined(distance, learned, _described(learned, random), random, say, most)
 
 
@@ -214,16 +214,16 @@ def _with_unexplained(
     """
     proposal = _described(learned, random)
     for _ in range(_EXPLORED):
-        found = learned.unexplained(proposal, learned.known)
-        if learned.evaluations + _DESCENTS * EXPLORING > most or not found.tells(learned.probability):
+        evidence = learned.unexplained(proposal, learned.known)
+        if learned.evaluations + _DESCENTS * EXPLORING > most or not evidence.tells(learned.probability):
             break
-        learned = _explored(distance, learned, found, random)
+        learned = _explored(distance, learned, evidence, random)
         proposal = _described(learned, random)
     return learned, proposal
 
 
-def _explored(distance: Distance, learned: Learned, found: Evidence, random: np.random.Generator) -> Learned:
-    made = [explore(distance, found.points, found.shares, found.log_mass, random) for _ in range(_DESCENTS)]
+def _explored(distance: Distance, learned: Learned, evidence: Evidence, random: np.random.Generator) -> Learned:
+    made = [explore(distance, evidence.points, evidence.shares, evidence.log_mass, random) for _ in range(_DESCENTS)]
     asked = sum(each.evaluations for each in made)
     return replace(learned, descents=(*learned.descents, *made), evaluations=learned.evaluations + asked)
 
@@ -284,11 +284,11 @@ def _dealt(halves: NDArray[np.int64], random: np.random.Generator) -> NDArray[np
 
 def _drawn(distance: Distance, proposal: Proposal, random: np.random.Generator, say: Say, most: float) -> Round:
     """Run a round; where few are accepted, a longer one."""
-    found, trials = list[Floats](), 0
-    while trials < _TRIALS or (sum(map(len, found)) < _ENOUGH and trials < min(_MOST_TRIALS, most)):
+    result, trials = list[Floats](), 0
+    while trials < _TRIALS or (sum(map(len, result)) < _ENOUGH and trials < min(_MOST_TRIALS, most)):
         points = proposal.draw(_TRIALS, random)
-        found.append(points[distance(points) == 0.0])
+        result.append(points[distance(points) == 0.0])
         trials += _TRIALS
         say(trials)
-    points = np.concatenate(found)
+    points = np.concatenate(result)
     return Round(proposal, trials, points, proposal.log_weights(points))

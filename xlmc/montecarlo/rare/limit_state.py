@@ -88,8 +88,8 @@ def comparisons_of(
         case ir.Call("NOT", (part,)):
             return comparisons_of(part, cell, formulas, wanted=not wanted)
         case ir.Call("AND" | "OR", parts) if parts and not any(isinstance(part, Area | ir.Missing) for part in parts):
-            found = tuple(comparisons_of(part, cell, formulas, wanted=wanted) for part in parts)
-            return Together(found, (tree.name == "AND") is wanted)
+            result = tuple(comparisons_of(part, cell, formulas, wanted=wanted) for part in parts)
+            return Together(result, (tree.name == "AND") is wanted)
         case ir.Call("IF", (condition, yes, no)) if not isinstance(yes, ir.Missing) and not isinstance(no, ir.Missing):
             return _either(condition, yes, no, cell, formulas, wanted=wanted)
         case ir.Binary(relation, left, right) if relation in _NEGATED:
@@ -133,13 +133,13 @@ def leaves(of: LimitState) -> list[Leaf]:
     return [leaf for part in (of.parts if isinstance(of, Together) else (of.part,)) for leaf in leaves(part)]
 
 
-def measure(of: LimitState, found: Mapping[Leaf, Floats]) -> Floats:
+def measure(of: LimitState, result: Mapping[Leaf, Floats]) -> Floats:
     """(n,) how far each trial is from what is asked, given how far from each comparison: 0 where it holds."""
     if isinstance(of, Leaf):
-        return found[of]
+        return result[of]
     if isinstance(of, Fails):
-        return np.asarray(measure(of.part, found) <= 0.0, dtype=np.float64)
-    parts = [measure(part, found) for part in of.parts]
+        return np.asarray(measure(of.part, result) <= 0.0, dtype=np.float64)
+    parts = [measure(part, result) for part in of.parts]
     return np.asarray((np.maximum if of.every else np.minimum).reduce(parts))
 
 
@@ -147,11 +147,11 @@ def lengths(holds: Column, gap: Column | None) -> Floats:
     """(n,) by how much a comparison fails: 0 where it holds, 1 where that is no number, infinite where undecided."""
     known = holds.values != 0 if holds.codes is None else (holds.values != 0) & (holds.codes == 0)
     if gap is None:
-        found = np.ones(known.size)
+        values = np.ones(known.size)
     else:
         apart = gap.as_floats()
-        found = np.where(np.isfinite(apart), np.clip(apart, _LEAST, _MOST), 1.0)
-    found[known] = 0.0
+        values = np.where(np.isfinite(apart), np.clip(apart, _LEAST, _MOST), 1.0)
+    values[known] = 0.0
     if holds.codes is not None:
-        found[holds.codes > 0] = np.inf
-    return found
+        values[holds.codes > 0] = np.inf
+    return values

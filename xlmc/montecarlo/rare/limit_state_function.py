@@ -181,7 +181,7 @@ class LimitStateFunction:
             yield self._asked(columns, self._scaled(columns))
 
     def _scaled(self, columns: Sequence[Column]) -> dict[Leaf, Floats]:
-        return {leaf: found / self._scales[leaf] for leaf, found in self._lengths(columns).items()}
+        return {leaf: values / self._scales[leaf] for leaf, values in self._lengths(columns).items()}
 
     def _asked(self, columns: Sequence[Column], scaled: Mapping[Leaf, Floats]) -> list[Floats]:
         """For each filter, (n,) how far a block's trials are from what it asks."""
@@ -235,23 +235,23 @@ class LimitStateFunction:
     def _usual(self, uniforms: Floats) -> dict[Leaf, float]:
         """Return the median length of every comparison where it fails."""
         parts = [list(self._lengths(columns).values()) for columns in self._columns(uniforms)]
-        found = [_median(np.concatenate(each)) for each in zip(*parts, strict=True)]
-        return dict(zip(self._leaves, found, strict=True))
+        result = [_median(np.concatenate(each)) for each in zip(*parts, strict=True)]
+        return dict(zip(self._leaves, result, strict=True))
 
 
 def _of_points(distance: Distance, points: Floats) -> Floats:
     return distance(uniforms_of(points))
 
 
-def _median(found: Floats) -> float:
-    failing = found[(found > 0.0) & np.isfinite(found)]
+def _median(values: Floats) -> float:
+    failing = values[(values > 0.0) & np.isfinite(values)]
     return float(np.median(failing)) if failing.size else 1.0
 
 
-def _exact(found: Floats, column: Column) -> Floats:
+def _exact(values: Floats, column: Column) -> Floats:
     """Give what the filter itself says the last word."""
     holds = column.values != 0
-    found = np.where(holds, 0.0, np.maximum(found, np.finfo(np.float64).tiny))
+    values = np.where(holds, 0.0, np.maximum(values, np.finfo(np.float64).tiny))
     if column.codes is not None:
-        found[column.codes > 0] = np.inf
-    return found
+        values[column.codes > 0] = np.inf
+    return values

@@ -51,12 +51,12 @@ class Mixture:
 
     def log_parts(self, points: Floats) -> Floats:
         """(K, n) of every component at (n, r) points: the logarithm of its share times its density."""
-        found = np.empty((self.shares.size, len(points)))
+        values = np.empty((self.shares.size, len(points)))
         for k, (share, mean, root) in enumerate(zip(self.shares, self.means, self.roots, strict=True)):
             apart = np.einsum("rq,nq->rn", np.linalg.inv(root), points - mean)
             scale = math.log(share) - float(np.log(np.diagonal(root)).sum()) - 0.5 * _LOG_2_PI * mean.size
-            found[k] = scale - 0.5 * np.einsum("rn,rn->n", apart, apart)
-        return found
+            values[k] = scale - 0.5 * np.einsum("rn,rn->n", apart, apart)
+        return values
 
     def log_density(self, points: Floats) -> Floats:
         """(n,) at (n, r) points."""
@@ -66,11 +66,11 @@ class Mixture:
         """(count, r) independent points."""
         component = np.searchsorted(np.cumsum(self.shares)[:-1], random.random(count), side="right")
         normal = random.standard_normal((count, self.means.shape[1]))
-        found = np.empty_like(normal)
+        values = np.empty_like(normal)
         for k, (mean, root) in enumerate(zip(self.means, self.roots, strict=True)):
             here = component == k
-            found[here] = mean + np.einsum("nr,qr->nq", normal[here], root)
-        return found
+            values[here] = mean + np.einsum("nr,qr->nq", normal[here], root)
+        return values
 
 
 def log_sum(logs: Floats) -> Floats:
@@ -95,8 +95,8 @@ def fit_mixture(points: Floats, weights: Floats, random: np.random.Generator) ->
     apart = points - centre
     root = np.linalg.cholesky(np.einsum("n,nr,nq->rq", shares, apart, apart))
     scaled = np.einsum("rq,nq->nr", np.linalg.inv(root), apart)
-    found = _rounded(_fit(scaled, weights, _components(scaled, weights, random), random))
-    return Mixture(found.shares, centre + found.means @ root.T, root @ found.roots)
+    mixture = _rounded(_fit(scaled, weights, _components(scaled, weights, random), random))
+    return Mixture(mixture.shares, centre + mixture.means @ root.T, root @ mixture.roots)
 
 
 def _components(points: Floats, weights: Floats, random: np.random.Generator) -> int:
@@ -106,9 +106,9 @@ def _components(points: Floats, weights: Floats, random: np.random.Generator) ->
         if components > 1 and components * (points.shape[1] + 2) * 10 > len(points):
             break
         tried = _fit(points[::2], weights[::2], components, random)
-        found = float(np.sum(weights[1::2] * tried.log_density(points[1::2])) / weights[1::2].sum())
-        if found > best + _GAIN:
-            best, number = found, components
+        value = float(np.sum(weights[1::2] * tried.log_density(points[1::2])) / weights[1::2].sum())
+        if value > best + _GAIN:
+            best, number = value, components
         elif components > 2 * number:
             break
     return number

@@ -211,10 +211,10 @@ class Shear:
 
     def shift(self, others: Floats) -> Floats:
         """(n, t) what (n, d − t) other coordinates say of the thin ones."""
-        found: Floats = self.constant + np.einsum("nk,tk->nt", others, self.linear)
+        values: Floats = self.constant + np.einsum("nk,tk->nt", others, self.linear)
         for index, square in enumerate(self.quadratic):
-            found[:, index] += np.einsum("nk,nk->n", np.einsum("nj,jk->nk", others, square), others)
-        return found
+            values[:, index] += np.einsum("nk,nk->n", np.einsum("nj,jk->nk", others, square), others)
+        return values
 
 
 def fit_shear(thin: Floats, others: Floats, weights: Floats) -> Shear:

@@ -125,11 +125,11 @@ def find(
 
 def _survey(accepts: Accepts, spread: Tempered, trials: int, random: np.random.Generator) -> Evidence:
     """Trials from the widened assumptions."""
-    found = list[Floats]()
+    result = list[Floats]()
     for start in range(0, trials, _BATCH):
         points = spread.draw(min(_BATCH, trials - start), random)
-        found.append(points[accepts(points)])
-    return Evidence.of(spread, trials, np.concatenate(found))
+        result.append(points[accepts(points)])
+    return Evidence.of(spread, trials, np.concatenate(result))
 
 
 Floats = NDArray[np.float64]
@@ -174,7 +174,7 @@ def search(
     wanted, most = settings.stopping.accepted or 0, search_limit(settings.trials, plain)
     independent = METHODS[settings.sampling].independent
     evidence = [_plain(model, settings, plain, accepted, function)] if independent else []
-    found = find(
+    result = find(
         function.distance,
         function.accepts,
         function.dimensions,
@@ -186,33 +186,33 @@ def search(
         evidence,
         function.strata,
     )
-    drawn = found.resampled
-    if drawn is None or found.used is None or len(drawn.points) < wanted:
-        failure = _failure(model, function, found, wanted, settings.trials - plain - most)
+    drawn = result.resampled
+    if drawn is None or result.used is None or len(drawn.points) < wanted:
+        failure = _failure(model, function, result, wanted, settings.trials - plain - most)
         return Search(np.empty((0, function.dimensions)), None, failure, function.evaluations)
-    proposal = found.used.proposal
+    proposal = result.used.proposal
     account = RareAccount(
         evaluations=plain + function.evaluations,
-        learning=function.evaluations - drawn.proposals - found.checked,
+        learning=function.evaluations - drawn.proposals - result.checked,
         proposals=drawn.proposals,
         proposals_accepted=drawn.accepted,
         fresh=drawn.fresh,
         kept=len(drawn.points),
-        acceptance=_acceptance(drawn, found.unexplained),
+        acceptance=_acceptance(drawn, result.unexplained),
         effective=drawn.effective,
         size=drawn.size,
-        searched=found.learned.searched,
-        explored=found.learned.explored,
-        levels=max(len(each.levels) for each in found.learned.descents),
+        searched=result.learned.searched,
+        explored=result.learned.explored,
+        levels=max(len(each.levels) for each in result.learned.descents),
         components=proposal.mixture.shares.size,
         directions=proposal.directions,
         dimensions=function.dimensions,
         lost=function.lost,
         plain=plain,
         plain_accepted=accepted.size,
-        checked=found.checked,
+        checked=result.checked,
         ways=len(function.strata),
-        missed=0.0 if found.unexplained is None else found.unexplained.mass,
+        missed=0.0 if result.unexplained is None else result.unexplained.mass,
         solved=tuple(layer.name for layer in function.layers) if isinstance(function, Layered) else (),
     )
     return Search(function.uniforms(drawn.points), account, "", function.evaluations)
@@ -232,11 +232,11 @@ def _acceptance(drawn: Resampled, unexplained: Evidence | None) -> Estimate:
     """Return the probability of acceptance, with the mass of what the proposal hardly ever comes to as a
     further error.
     """
-    found = drawn.acceptance
-    if unexplained is None or not len(unexplained.points) or found.error is None or found.n is None:
-        return found
-    error = math.hypot(found.error, unexplained.mass)
-    return with_relative_error(found.value, error, drawn.effective - 1.0, 0.95, found.n)
+    estimate = drawn.acceptance
+    if unexplained is None or not len(unexplained.points) or estimate.error is None or estimate.n is None:
+        return estimate
+    error = math.hypot(estimate.error, unexplained.mass)
+    return with_relative_error(estimate.value, error, drawn.effective - 1.0, 0.95, estimate.n)
 
 
 def _random(seed: int, purpose: str) -> np.random.Generator:
@@ -245,29 +245,29 @@ def _random(seed: int, purpose: str) -> np.random.Generator:
     return np.random.Generator(np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=words)))
 
 
-def _failure(model: CompiledModel, function: SearchSpace, found: Found, wanted: int, left: int) -> str:
+def _failure(model: CompiledModel, function: SearchSpace, result: Found, wanted: int, left: int) -> str:
     """Why there are no trials, in words."""
-    reached = [each for each in found.learned.descents if each.reached]
+    reached = [each for each in result.learned.descents if each.reached]
     if not reached:
-        nearest = np.stack([each.nearest for each in found.learned.descents])
+        nearest = np.stack([each.nearest for each in result.learned.descents])
         index = int(np.argmin(function.distance(nearest)))
         lengths = function.by_filter(nearest[index : index + 1])
         names = [repr(f.name) for f, (length,) in zip(model.filters, lengths, strict=True) if length > 0.0]
         return (
-            f"a search of {count_text(found.evaluations)} trials found none that the filters accept: "
+            f"a search of {count_text(result.evaluations)} trials found none that the filters accept: "
             "the nearest one still "
             f"fails {' and '.join(names)}, so the filters contradict each other or the assumptions, or accept less "
             "than one trial in 10¹⁵"
         )
-    share = f"about {number_text(found.learned.probability, 1)} of all trials are accepted"
-    if found.used is None and found.learned.best is None:
+    share = f"about {number_text(result.learned.probability, 1)} of all trials are accepted"
+    if result.used is None and result.learned.best is None:
         return (
-            f"a search of {count_text(found.evaluations)} trials found that {share}, but could not "
+            f"a search of {count_text(result.evaluations)} trials found that {share}, but could not "
             "describe where they lie"
         )
     more = f"the part of the limit (-n) that a search may take, one in {SEARCH_PART}" if left else "the limit (-n)"
     return (
-        f"a search of {count_text(found.evaluations)} trials found that {share}, described badly where "
+        f"a search of {count_text(result.evaluations)} trials found that {share}, described badly where "
         "they lie, and gave up, "
         f"as {count_text(wanted)} of them would take more than {more},"
     )

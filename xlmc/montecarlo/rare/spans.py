@@ -92,12 +92,12 @@ def union(parts: list[Spans]) -> Spans:
 
 def intersection(parts: list[Spans]) -> Spans:
     """Intersect sets: return what all of them hold."""
-    found = parts[0]
+    spans = parts[0]
     for each in parts[1:]:
-        low = np.maximum(found.low[:, None], each.low[None])
-        high = np.minimum(found.high[:, None], each.high[None])
-        found = union_of_pairs([(low.reshape(-1, low.shape[-1]), high.reshape(-1, high.shape[-1]))])
-    return found
+        low = np.maximum(spans.low[:, None], each.low[None])
+        high = np.minimum(spans.high[:, None], each.high[None])
+        spans = union_of_pairs([(low.reshape(-1, low.shape[-1]), high.reshape(-1, high.shape[-1]))])
+    return spans
 
 
 def choose(holds: NDArray[np.bool_], yes: Spans, no: Spans) -> Spans:
@@ -126,38 +126,38 @@ class Rearranged:
         """Rearrange by intervals (p, n) of the uniform; empty ones have no length."""
         with np.errstate(invalid="ignore"):
             margin = _MARGIN * (high - low) + _BITS * np.spacing(np.where(low < high, high, 1.0))
-        found = union_of_pairs([_within(low, high, margin)])
+        spans = union_of_pairs([_within(low, high, margin)])
         with np.errstate(invalid="ignore"):
-            length = np.where(found.low < found.high, found.high - found.low, 0.0)
+            length = np.where(spans.low < spans.high, spans.high - spans.low, 0.0)
         reached = np.cumsum(length, axis=0)
-        return cls(found.low, length, reached - length, np.minimum(reached[-1], 1.0))
+        return cls(spans.low, length, reached - length, np.minimum(reached[-1], 1.0))
 
     def uniform_at(self, position: Floats) -> Floats:
         """(n,) the uniform at these positions, (n,)."""
         rest = position - self.total
-        found = rest.copy()
+        values = rest.copy()
         for start, length, before in zip(self.start, self.length, self.before, strict=True):
-            found += np.where(rest >= start - before, length, 0.0)
+            values += np.where(rest >= start - before, length, 0.0)
         for start, length, before in zip(self.start, self.length, self.before, strict=True):
             inside = (position >= before) & (position < before + length)
-            found = np.where(inside, start + (position - before), found)
-        return np.asarray(np.clip(found, 0.0, _LARGEST))
+            values = np.where(inside, start + (position - before), values)
+        return np.asarray(np.clip(values, 0.0, _LARGEST))
 
     def position_of(self, uniform: Floats) -> Floats:
         """(n,) the positions of uniforms, (n,)."""
-        found = uniform + self.total
+        values = uniform + self.total
         for start, length in zip(self.start, self.length, strict=True):
-            found -= np.where(uniform >= start + length, length, 0.0)
+            values -= np.where(uniform >= start + length, length, 0.0)
         for start, length, before in zip(self.start, self.length, self.before, strict=True):
             inside = (uniform >= start) & (uniform < start + length)
-            found = np.where(inside, before + (uniform - start), found)
-        return np.asarray(np.clip(found, 0.0, _LARGEST))
+            values = np.where(inside, before + (uniform - start), values)
+        return np.asarray(np.clip(values, 0.0, _LARGEST))
 
     def fold(self, position: Floats) -> Floats:
         """(n,) positions that are all within the intervals: those beyond, by whole lengths nearer."""
         some = self.total > 0.0
-        found = np.fmod(position, np.where(some, self.total, 1.0))
-        return np.where(some, found, position)
+        values = np.fmod(position, np.where(some, self.total, 1.0))
+        return np.where(some, values, position)
 
 
 def _within(low: Floats, high: Floats, margin: Floats) -> tuple[Floats, Floats]:

@@ -87,24 +87,24 @@ def descend(
 ) -> Descent:
     """Send a population of `population` points on its way, the best of `first` draws of the assumptions."""
     points = random.standard_normal((first, dimensions))
-    found = distance(points)
+    values = distance(points)
     evaluations, logs, levels, stuck = first, 0.0, [math.inf], 0
     steps = _Steps()
     while levels[-1] > 0.0 and stuck < _TRIES and logs > _LEAST_LOG:
-        level = _next_level(found, int(population * _KEPT), levels[-1])
+        level = _next_level(values, int(population * _KEPT), levels[-1])
         stuck = 0 if level is not None else stuck + 1
         if level is not None:
-            logs += math.log(float(np.mean(found <= level)))
+            logs += math.log(float(np.mean(values <= level)))
             levels.append(level)
-        inside = random.permutation(np.flatnonzero(found <= levels[-1]))
+        inside = random.permutation(np.flatnonzero(values <= levels[-1]))
         if not inside.size:
             break
         chosen = np.resize(inside, population)
-        points, found, asked = _moved(points[chosen], found[chosen], levels[-1], distance, steps, _SWEEPS, random)
+        points, values, asked = _moved(points[chosen], values[chosen], levels[-1], distance, steps, _SWEEPS, random)
         evaluations += asked
-    nearest, reached, taken = points[int(np.argmin(found))], levels[-1] == 0.0, [points]
+    nearest, reached, taken = points[int(np.argmin(values))], levels[-1] == 0.0, [points]
     while reached and len(taken) < _SNAPSHOTS:
-        points, found, asked = _moved(points, found, 0.0, distance, steps, _LAST_SWEEPS, random)
+        points, values, asked = _moved(points, values, 0.0, distance, steps, _LAST_SWEEPS, random)
         evaluations += asked
         taken.append(points)
     return Descent(np.concatenate(taken), reached, logs, tuple(levels[1:]), evaluations, nearest)
@@ -127,22 +127,22 @@ def explore(
         random: to move with.
     """
     points = seeds[random.choice(len(seeds), _EXPLORERS, p=shares)]
-    found, steps, asked, taken = np.zeros(_EXPLORERS), _Steps(_FIRST_STEP, _FIRST_STEP), 0, list[Floats]()
+    values, steps, asked, taken = np.zeros(_EXPLORERS), _Steps(_FIRST_STEP, _FIRST_STEP), 0, list[Floats]()
     for turn in range(_SNAPSHOTS + 1):
-        moved = _moved(points, found, 0.0, distance, steps, _SWEEPS, random, alone=not turn)
+        moved = _moved(points, values, 0.0, distance, steps, _SWEEPS, random, alone=not turn)
         points, asked, taken = moved[0], asked + moved[2], [*taken, moved[0]]
     return Descent(np.concatenate(taken[1:]), True, log_mass, (0.0,), asked, points[0], explored=True)
 
 
-def _next_level(found: Floats, wanted: int, before: float) -> float | None:
+def _next_level(values: Floats, wanted: int, before: float) -> float | None:
     """Return the next lower level; None if hardly a point lies below the last one.
 
     Where most points stand level, as where a filter says no more than no, the few below them are taken.
     """
-    level = float(np.partition(found, wanted - 1)[wanted - 1])
-    if level < before and np.mean(found <= level) <= _LEVEL:
+    level = float(np.partition(values, wanted - 1)[wanted - 1])
+    if level < before and np.mean(values <= level) <= _LEVEL:
         return level
-    below = found[found < min(level, before)]
+    below = values[values < min(level, before)]
     if below.size >= _LEAST:
         return float(below.max())
     return level if level < before else None
@@ -158,7 +158,7 @@ class _Steps:
 
 def _moved(
     points: Floats,
-    found: Floats,
+    values: Floats,
     level: float,
     distance: Distance,
     steps: _Steps,
@@ -188,13 +188,13 @@ def _moved(
         there[allowed] = distance(offered[allowed])
         asked += int(np.count_nonzero(allowed))
         taken = there <= level
-        points, found = np.where(taken[:, None], offered, points), np.where(taken, there, found)
+        points, values = np.where(taken[:, None], offered, points), np.where(taken, there, values)
         factor = math.exp(float(np.mean(taken)) - _WANTED_RATE)
         if sweep % 2 and common is not None:
             steps.common = min(1.0, max(1e-3, steps.common * factor))
         else:
             steps.own = min(1.0, max(1e-3, steps.own * factor))
-    return points, found, asked
+    return points, values, asked
 
 
 def _lengths(usual: float, count: int, random: np.random.Generator) -> Floats:

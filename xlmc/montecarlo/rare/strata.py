@@ -67,10 +67,10 @@ def _discrete_switch(model: CompiledModel, assumption: Assumption) -> Switch | N
         return None
     values = _RANKS.copy()
     draw.fill(values, {})
-    found = np.unique(values)
-    if not 1 < found.size <= MOST_STRATA // 2 or assumption.name in model.fallible:
+    result = np.unique(values)
+    if not 1 < result.size <= MOST_STRATA // 2 or assumption.name in model.fallible:
         return None
-    return _value_switch(assumption.cell, found.tolist())
+    return _value_switch(assumption.cell, result.tolist())
 
 
 def cells_of(tree: ir.Expression) -> Iterator[Cell]:
@@ -137,13 +137,13 @@ def _formula_switches(
         filters: what they ask.
         formulas: the resolved formulas of the cells that they may lead to.
     """
-    found = list[tuple[ir.Expression | None, Switch]]()
+    result = list[tuple[ir.Expression | None, Switch]]()
     waiting: deque[tuple[ir.Expression, Cell, int]] = deque()
     for each in filters:
-        found += [(None, switch) for switch in _any_of(each)]
+        result += [(None, switch) for switch in _any_of(each)]
         waiting += [(leaf.holds.tree, leaf.holds.cell, 0) for leaf in leaves(each)]
     seen = set[Cell]()
-    while waiting and len(found) < _MOST_SWITCHES:
+    while waiting and len(result) < _MOST_SWITCHES:
         tree, cell, rising = waiting.popleft()
         if isinstance(tree, Cell):
             if tree in formulas and tree not in seen:
@@ -155,9 +155,9 @@ def _formula_switches(
             continue
         switch = _alternatives(tree, cell, formulas, rising) if _is_single(tree) else None
         if switch is not None:
-            found.append(switch)
+            result.append(switch)
         waiting += [(part, cell, side) for part, side in _parts(tree, rising)]
-    return found
+    return result
 
 
 def _is_single(tree: ir.Expression) -> bool:
@@ -227,12 +227,12 @@ def _extreme(relation: str, number: int, values: Sequence[ir.Expression], cell: 
 
 def _scalars(arguments: Sequence[ir.Expression]) -> list[ir.Expression]:
     """Return the values that arguments are; none where an area is large, or an argument left out."""
-    found = list[ir.Expression]()
+    result = list[ir.Expression]()
     for each in arguments:
         if isinstance(each, ir.Missing):
             return []
-        found += islice(each.cells(), _MOST_ARGUMENTS + 1) if isinstance(each, Area) else [each]
-    return found
+        result += islice(each.cells(), _MOST_ARGUMENTS + 1) if isinstance(each, Area) else [each]
+    return result
 
 
 def _comparison(relation: str, left: ir.Expression, right: ir.Expression, cell: Cell) -> Leaf:

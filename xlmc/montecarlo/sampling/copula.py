@@ -159,8 +159,8 @@ def _repaired(matrix: Floats, weights: Floats | None) -> Floats:
     """Find the nearest correlation matrix, by weights where there are any."""
     if weights is None or not weights.any():
         return nearest_correlation(matrix)
-    found, met = nearest_by_weights(matrix, weights)
-    return found if met else nearest_by_weights(matrix, np.minimum(weights, _ALMOST))[0]
+    values, met = nearest_by_weights(matrix, weights)
+    return values if met else nearest_by_weights(matrix, np.minimum(weights, _ALMOST))[0]
 
 
 def nearest_by_weights(matrix: Floats, weights: Floats) -> tuple[Floats, bool]:
@@ -178,20 +178,20 @@ def nearest_by_weights(matrix: Floats, weights: Floats) -> tuple[Floats, bool]:
     np.fill_diagonal(free, 0.0)
     free /= max(free.max(), 1 - _ALMOST / 100)
     share = free / (1 + free)
-    found, turned = matrix.copy(), np.zeros_like(matrix)
+    values, turned = matrix.copy(), np.zeros_like(matrix)
     last = np.inf
     for round_ in range(_PROJECTIONS):
-        inside = _drop_negative_eigenvalues(found + turned)
-        turned += found - inside
-        before, found = found, matrix + share * (inside - turned - matrix)
-        apart = float(np.abs(found - inside).max())
-        if max(apart, float(np.abs(found - before).max())) <= _CLOSE_ENOUGH:
+        inside = _drop_negative_eigenvalues(values + turned)
+        turned += values - inside
+        before, values = values, matrix + share * (inside - turned - matrix)
+        apart = float(np.abs(values - inside).max())
+        if max(apart, float(np.abs(values - before).max())) <= _CLOSE_ENOUGH:
             break
         if round_ % _PATIENCE == _PATIENCE - 1:
             if apart > max(_MET, 0.98 * last):
                 break  # no nearer than so many rounds before
             last = apart
-    return found, apart <= _MET
+    return values, apart <= _MET
 
 
 def nearest_correlation(matrix: Floats) -> Floats:
@@ -203,17 +203,17 @@ def nearest_correlation(matrix: Floats) -> Floats:
     >>> nearest_correlation(np.array([[1.0, 1.0, 0.0], [1.0, 1.0, 1.0], [0.0, 1.0, 1.0]]))[0].round(4).tolist()
     [1.0, 0.7607, 0.1573]
     """
-    found, correction = matrix.copy(), np.zeros_like(matrix)
+    values, correction = matrix.copy(), np.zeros_like(matrix)
     for _ in range(_PROJECTIONS):
-        before = found
+        before = values
         corrected = before - correction
         inside = _drop_negative_eigenvalues(corrected)
         correction = inside - corrected
-        found = inside.copy()
-        np.fill_diagonal(found, 1.0)
-        if np.linalg.norm(found - before) <= _CLOSE * np.linalg.norm(found):
+        values = inside.copy()
+        np.fill_diagonal(values, 1.0)
+        if np.linalg.norm(values - before) <= _CLOSE * np.linalg.norm(values):
             break
-    return found
+    return values
 
 
 def _drop_negative_eigenvalues(matrix: Floats) -> Floats:
@@ -258,21 +258,21 @@ class Ties:
 def ties_of(quantiles: Quantiles) -> Ties | None:
     """Find the values that a draw takes; None if hardly any two draws are equal, or all."""
     u = (np.arange(_GRID) + 0.5) / _GRID
-    found = quantiles(u)
-    new = np.flatnonzero(found[1:] != found[:-1])
+    values = quantiles(u)
+    new = np.flatnonzero(values[1:] != values[:-1])
     if new.size <= _FEW:
         u = np.concatenate([_ENDS[::-1], u, 1 - _ENDS])
-        found = quantiles(u)
-        new = np.flatnonzero(found[1:] != found[:-1])
+        values = quantiles(u)
+        new = np.flatnonzero(values[1:] != values[:-1])
     if new.size in (0, u.size - 1):
         return None
-    ties = Ties(_join_rare_values(_refined_cuts(quantiles, u, found, new)))
+    ties = Ties(_join_rare_values(_refined_cuts(quantiles, u, values, new)))
     return ties if np.sum(ties.chances**3) > _NEGLIGIBLE else None
 
 
-def _refined_cuts(quantiles: Quantiles, u: Floats, found: Floats, new: NDArray[np.intp]) -> Floats:
+def _refined_cuts(quantiles: Quantiles, u: Floats, values: Floats, new: NDArray[np.intp]) -> Floats:
     """Find by halving where the value changes after each of some probabilities."""
-    low, high, before = u[new].copy(), u[new + 1].copy(), found[new]
+    low, high, before = u[new].copy(), u[new + 1].copy(), values[new]
     for _ in range(_HALVINGS):
         middle = (low + high) / 2
         grown = quantiles(middle) > before

@@ -77,11 +77,11 @@ class _Joined(ABC):
     @cached_property
     def spearman(self) -> Floats:
         """The rank correlations that the draws have, `(k, k)`, right to 1e-3."""
-        found = np.eye(self.size)
+        values = np.eye(self.size)
         for i in range(self.size):
             for j in range(i + 1, self.size):
-                found[i, j] = found[j, i] = self.pair(i, j)
-        return found
+                values[i, j] = values[j, i] = self.pair(i, j)
+        return values
 
     @abstractmethod
     def pair(self, i: int, j: int) -> float:

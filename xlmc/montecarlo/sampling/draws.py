@@ -226,8 +226,8 @@ class Sampler:
         self._filled: set[str] = set()
         for stage in stages:
             for draw in stage.draws:
-                if draw.name not in grouped and (found := draw.offset_and_factor()) is not None:
-                    maps[draw.name] = found
+                if draw.name not in grouped and (pair := draw.offset_and_factor()) is not None:
+                    maps[draw.name] = pair
                     self._filled.add(draw.name)
         self._maps, self._filler = list(maps.values()), filler
         self.streams = [margin for margin in self._margins if isinstance(margin, Stream)]
@@ -272,7 +272,7 @@ class Sampler:
         if self._groups or None in maps or len(self.streams) < len(draws):
             return None
         streams = tuple(self.streams[self._row_of[draw.name]] for draw in draws)
-        return Linear(streams, tuple(found for found in maps if found is not None))
+        return Linear(streams, tuple(pair for pair in maps if pair is not None))
 
     def draw(self, start: int) -> dict[str, Floats]:
         """Draw the trials `start` to `start + block - 1`, `(block,)` each; NaN for an error."""

@@ -138,15 +138,15 @@ def run_model(
     tasks = (task(start, min(piece, plan.trials - start)) for start in range(0, plan.trials, piece))
     stopped: Stopped | None = None
     with Interruption(wanted=options.keep_interrupted and may_end_early(settings.sampling)) as interruption:
-        found: Search | Stopped | None = None
+        result: Search | Stopped | None = None
         with closing(blocks_of(tasks)) as blocks:
-            while stopped is None and found is None:
+            while stopped is None and result is None:
                 if looks.should_search(gathered.trials, gathered.accepted):
-                    found = _searched(
+                    result = _searched(
                         model, settings, gathered.trials, gathered.accepted_trials, watch, interruption, progress
                     )
-                    if _plain_go_on(found, looks, gathered):
-                        found = None
+                    if _plain_go_on(result, looks, gathered):
+                        result = None
                     continue
                 finished = next(blocks)
                 counting = finished.trials if looks.certain else watch.counting(finished)
@@ -159,12 +159,12 @@ def run_model(
                     stopped = None
                 if progress is not None and teller is not None:
                     progress(teller.after(finished, watch.share))
-        if found is None:
+        if result is None:
             assert stopped is not None
             return gathered.simulation(settings, plan, stopped)
-    if isinstance(found, Stopped):
-        return gathered.simulation(settings, plan, found)
-    return _with_search(gathered.simulation(settings, plan, watch.goal_reached), found, most_inputs, options.in_memory)
+    if isinstance(result, Stopped):
+        return gathered.simulation(settings, plan, result)
+    return _with_search(gathered.simulation(settings, plan, watch.goal_reached), result, most_inputs, options.in_memory)
 
 
 def _followed(model: CompiledModel, follow: Collection[str] | None) -> Collection[str]:
@@ -173,9 +173,9 @@ def _followed(model: CompiledModel, follow: Collection[str] | None) -> Collectio
     return [name for name in numbers if follow is None or name in follow]
 
 
-def _plain_go_on(found: Search | Stopped, looks: RareSwitch, gathered: _Gathered) -> bool:
+def _plain_go_on(result: Search | Stopped, looks: RareSwitch, gathered: _Gathered) -> bool:
     """Whether a search has failed where plain trials would do, only at a higher cost; no other is then made."""
-    failed = isinstance(found, Stopped) and found.by == "search"
+    failed = isinstance(result, Stopped) and result.by == "search"
     if not failed or looks.certain or not looks.will_do(gathered.trials, gathered.accepted):
         return False
     looks.give_up()
@@ -211,20 +211,20 @@ def _searched(
     from xlmc.montecarlo.rare.search import search
 
     try:
-        found = search(model, settings, plain, accepted, say)
+        result = search(model, settings, plain, accepted, say)
     except _EndedError as ended:
         return ended.stopped
-    return found if found.account is not None else Stopped("search", found.failure, watch.goal_reached.goal)
+    return result if result.account is not None else Stopped("search", result.failure, watch.goal_reached.goal)
 
 
-def _with_search(plain: RunResult, found: Search, most_inputs: int, in_memory: int | None) -> RunResult:
+def _with_search(plain: RunResult, search: Search, most_inputs: int, in_memory: int | None) -> RunResult:
     """Return the run with the trials that were found, instead of those few that plain trials had left."""
     from xlmc.montecarlo.rare.search import accepted_blocks
 
-    assert found.account is not None
+    assert search.account is not None
     model, block = plain.model, plain.model.program("numpy").largest_block
-    gathered = _Gathered(model, block, block, most_inputs, len(found.uniforms), in_memory)
-    for each in accepted_blocks(model, found.uniforms, block, lambda: gathered.wants_inputs):
+    gathered = _Gathered(model, block, block, most_inputs, len(search.uniforms), in_memory)
+    for each in accepted_blocks(model, search.uniforms, block, lambda: gathered.wants_inputs):
         gathered.add(each)
     drawn = gathered.simulation(plain.settings, plain.plan, plain.stopped)
     return replace(
@@ -235,7 +235,7 @@ def _with_search(plain: RunResult, found: Search, most_inputs: int, in_memory: i
         faults=drawn.faults,
         discards=drawn.discards,
         labels=drawn.labels,
-        rare=replace(found.account, kept=gathered.accepted, faulty=gathered.lost),
+        rare=replace(search.account, kept=gathered.accepted, faulty=gathered.lost),
     )
 
 
@@ -291,8 +291,8 @@ class _Gathered:
 
     def _expected(self, accepted: int) -> dict[Hashable, int]:
         """Return how many numbers the columns of accepted trials have, if so many are accepted."""
-        found: dict[Hashable, int] = {("trial", 0): accepted, **dict.fromkeys(self._forecasts.values(), accepted)}
-        return found | dict.fromkeys(self._inputs.values(), min(self._keep_inputs + self._piece, accepted))
+        result: dict[Hashable, int] = {("trial", 0): accepted, **dict.fromkeys(self._forecasts.values(), accepted)}
+        return result | dict.fromkeys(self._inputs.values(), min(self._keep_inputs + self._piece, accepted))
 
     def _keep(self, block: Block) -> None:
         if not self.trials and block.accepted.size < block.trials:  # as many more as chance may add, and some

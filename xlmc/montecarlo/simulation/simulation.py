@@ -286,10 +286,10 @@ class RunResult:
     def accepted_by_replicate(self) -> Replicates:
         """How many trials each replicate has accepted; of none where the trials themselves are independent."""
         count = -(-self.trials // self.plan.size) if self.plan.size else 0
-        found = np.zeros(count, np.int64)
+        values = np.zeros(count, np.int64)
         for part in parts(self.trial_index) if count else ():
-            found += np.bincount(part // self.plan.size, minlength=count)
-        return found
+            values += np.bincount(part // self.plan.size, minlength=count)
+        return values
 
     @property
     def _effective(self) -> int:
@@ -309,17 +309,17 @@ class RunResult:
     @cached_property
     def notices_of_run(self) -> tuple[Notice, ...]:
         """What the person should know of this run alone."""
-        found: list[Notice] = []
+        notices: list[Notice] = []
         effective = self._effective
         if not self.plan.replicates and self.has_few:
             few = f"only {_trials(self.accepted)} accepted" if self.weighting is None else ""
             few = few or f"the accepted trials say as much as {effective} trials of equal weight"
-            found.append(Notice(f"{few}. {_OF_FEW}"))
+            notices.append(Notice(f"{few}. {_OF_FEW}"))
         samples = {name: result.sample for name, result in self.results.items() if name not in self.labels}
-        found += [Notice(each) for each in self.agreement.remarks] if self.agreement else []
-        found += direction_notices(each for name, each in self.results.items() if name not in self.labels)
-        found += unsettled_notices(self.model, self.prior)
-        return (*found, *tail_notices(samples, METHODS[self.plan.method].name))
+        notices += [Notice(each) for each in self.agreement.remarks] if self.agreement else []
+        notices += direction_notices(each for name, each in self.results.items() if name not in self.labels)
+        notices += unsettled_notices(self.model, self.prior)
+        return (*notices, *tail_notices(samples, METHODS[self.plan.method].name))
 
     @property
     def warnings(self) -> list[str]:
@@ -330,19 +330,19 @@ class RunResult:
     @property
     def warnings_of_trials(self) -> list[str]:
         """The same, but for what the workbook's own cells cannot show."""
-        found = []
+        result = []
         if self.accepted == 0 and self.stopped.by != "search":
             most = self.acceptance.interval
             fewer = "" if most is None else f", or accept fewer than {_rounded_up(100.0 * most[1])} % of the trials"
             why = f"the filters contradict the assumptions{fewer}{self._by_itself}"
             if self.error_trials >= self.trials:
                 why = "every trial was lost to an error in a cell"
-            found.append(f"no trial was accepted: {why}")
+            result.append(f"no trial was accepted: {why}")
         if not self.stopped.reached and not self.stopped.interrupted:
-            found.append(self.stopped.sentence)
+            result.append(self.stopped.sentence)
         if self.error_trials > ERROR_SHARE * self.trials:
             share = self.error_trials / self.trials
-            found.append(
+            result.append(
                 f"{counted_text(self.error_trials, 'trial')} ({styled_text(share, '.2%')}) "
                 f"{'was' if self.error_trials == 1 else 'were'} lost to errors in cells"
             )
@@ -350,7 +350,7 @@ class RunResult:
         if self.agreement is not None and self.agreement.conflicts:
             failing.append(self.agreement.sentence)
         rare = () if self.rare is None else self.rare.warnings
-        return [*self.refused, *failing, *found, *self._sparse(), *self._lost_digits, *rare]
+        return [*self.refused, *failing, *result, *self._sparse(), *self._lost_digits, *rare]
 
     @property
     def _by_itself(self) -> str:
@@ -459,11 +459,11 @@ class RunResult:
         if inputs:
             drawn = {assumption_heading(name, self.forecasts): values for name, values in self.inputs.items()}
             columns = drawn | columns
-        found = pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name=TRIAL))
+        result = pandas.DataFrame(columns, index=pandas.Index(self.trial_index, name=TRIAL))
         units = {assumption_heading(a.name, self.forecasts): a.units for a in self.model.assumptions}
         units |= {forecast_heading(f.name): f.units for f in self.model.forecasts}
-        found.attrs["units"] = {name: units.get(name, "") for name in found.columns}
-        return found
+        result.attrs["units"] = {name: units.get(name, "") for name in result.columns}
+        return result
 
     def numbers_of(self, name: str) -> Floats:
         """Return the column of a forecast, `(m,)`; NaN where its answers are texts."""
@@ -514,5 +514,5 @@ def weight_heading(others: Collection[str]) -> str:
 
 
 def _weights(weigh: Callable[[], Weighting | None]) -> NDArray[np.float64] | None:
-    found = weigh()
-    return None if found is None else found.weights
+    weighting = weigh()
+    return None if weighting is None else weighting.weights

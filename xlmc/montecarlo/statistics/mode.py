@@ -89,13 +89,13 @@ def _are_counts(x: Floats) -> bool:
 
 def _most_frequent(x: Floats, w: Floats | None) -> float:
     """Return the value with the most weight; the middle one if there are several."""
-    most, found = 0.0, [np.empty(0)]
+    most, result = 0.0, [np.empty(0)]
     for values, carried in _runs(x, w):
         largest = float(carried.max(initial=0.0))
         if largest > most * (1.0 + ROUNDING):
-            most, found = largest, []
-        found.append(values[carried >= most * (1.0 - ROUNDING)])
-    tied = np.concatenate(found)
+            most, result = largest, []
+        result.append(values[carried >= most * (1.0 - ROUNDING)])
+    tied = np.concatenate(result)
     return float(tied[(tied.size - 1) // 2])
 
 
@@ -191,13 +191,13 @@ def _modes_of_groups(sample: Sample) -> tuple[Floats, Floats]:
 
 def half_sample_modes(rows: Floats) -> Floats:
     """Return the modes, `(g,)`, of `(g, n)` values, ascending in each row: what `half_sample_mode` gives for each."""
-    found, waiting = np.empty(len(rows)), np.arange(len(rows))
+    values, waiting = np.empty(len(rows)), np.arange(len(rows))
     different = 1 + np.count_nonzero(rows[:, 1:] != rows[:, :-1], axis=1)
 
     def finish(done: NDArray[np.bool_], mode_of: Callable[[Floats], float]) -> None:
         nonlocal rows, waiting
         if done.any():
-            found[waiting[done]] = [mode_of(row) for row in rows[done]]
+            values[waiting[done]] = [mode_of(row) for row in rows[done]]
             rows, waiting = rows[~done], waiting[~done]
 
     finish(2 * different <= rows.shape[1], lambda row: _most_frequent(row, None))
@@ -208,16 +208,16 @@ def half_sample_modes(rows: Floats) -> Floats:
             rows = np.array([row[start : start + size] for row, start in zip(rows, starts, strict=True)])
             finish(rows[:, 0] == rows[:, -1], lambda row: float(row[0]))
     finish(np.ones(waiting.size, bool), lambda row: _mode_of_three(row, np.ones(row.size)))
-    return found
+    return values
 
 
 def _find_smallest_of_rows(widths: Floats) -> NDArray[np.intp]:
     """Return `_find_smallest` of each row."""
     smallest = widths <= widths.min(axis=1, keepdims=True) * (1.0 + ROUNDING)
-    found: NDArray[np.intp] = smallest.argmax(axis=1)
+    values: NDArray[np.intp] = smallest.argmax(axis=1)
     for row in np.flatnonzero(np.count_nonzero(smallest, axis=1) > 2):
-        found[row] = _find_smallest(widths[row])
-    return found
+        values[row] = _find_smallest(widths[row])
+    return values
 
 
 @lru_cache(maxsize=2)

@@ -66,8 +66,8 @@ def moments_of(x: Floats, w: Floats | None, group: NDArray[np.intp] | None, grou
     if x.size == 0:
         return Moments(np.nan, np.nan, np.nan, np.nan, np.zeros((4, 4)), np.nan)
     if max(abs(float(x[0])), abs(float(x[-1]))) > _SUMMABLE:
-        found = moments_of(np.ldexp(x, -_SHRUNK), w, group, groups, units)  # an exact scale: sums would overflow
-        return replace(found, mean=math.ldexp(found.mean, _SHRUNK), scale=math.ldexp(found.scale, _SHRUNK))
+        moments = moments_of(np.ldexp(x, -_SHRUNK), w, group, groups, units)  # an exact scale: sums would overflow
+        return replace(moments, mean=math.ldexp(moments.mean, _SHRUNK), scale=math.ldexp(moments.scale, _SHRUNK))
     pivot = float(x[x.size // 2])
     shift = _average(lambda here: x[here] - pivot, x.size, w)
 

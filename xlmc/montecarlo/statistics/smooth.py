@@ -76,8 +76,8 @@ def mean(
     nan
     """
     sample = Sample.of(values, weights, replicate)
-    if (found := share_of_ones(sample, confidence)) is not None:
-        return found
+    if (estimate := share_of_ones(sample, confidence)) is not None:
+        return estimate
     m = sample.moments
     return _estimate(sample, m.mean, m.scale, MEAN, _error(sample, (*MEAN, 0.0, 0.0)), confidence, with_error)
 
@@ -98,8 +98,8 @@ def variance(
     value = _deviation(sample) * _deviation(sample)
     if math.isinf(value):  # too large for a number
         return Estimate(np.nan, n=sample.n)
-    if (found := share_of_ones(sample, confidence)) is not None:
-        return variance_of_share(found, value, confidence)
+    if (estimate := share_of_ones(sample, confidence)) is not None:
+        return variance_of_share(estimate, value, confidence)
     error = _relative_error_of_variance(sample)
     return _estimate(sample, value, value, SQUARE, error, confidence, with_relative_error)
 
@@ -110,8 +110,8 @@ def standard_deviation(
     """Square root of the sample variance, as Excel's STDEV.S."""
     sample = Sample.of(values, weights, replicate)
     value = _deviation(sample)
-    if (found := share_of_ones(sample, confidence)) is not None:
-        return deviation_of_share(found, value, confidence)
+    if (estimate := share_of_ones(sample, confidence)) is not None:
+        return deviation_of_share(estimate, value, confidence)
     error = _relative_error_of_variance(sample)
     return _estimate(sample, value, 0.5 * value, SQUARE, error, confidence, with_relative_error)
 
@@ -125,8 +125,8 @@ def coefficient_of_variation(
     if m.mean == 0.0:
         return Estimate(np.nan, n=sample.n)
     value = _deviation(sample) / m.mean
-    if (found := share_of_ones(sample, confidence)) is not None:
-        return coefficient_of_share(found, value, confidence)
+    if (estimate := share_of_ones(sample, confidence)) is not None:
+        return coefficient_of_share(estimate, value, confidence)
     sign = math.copysign(1.0, value)
     pull = -sign * m.scale / m.mean, sign * 0.5
     return _estimate(sample, value, abs(value), pull, _error(sample, (*pull, 0.0, 0.0)), confidence, with_error)
@@ -214,13 +214,13 @@ def _estimate(
     of_trials = trial_skewness(m, pull, n)
     if sample.group is None:
         return make(value, size * error, sample.dof, confidence, sample.n, of_trials)
-    found = make(value, size * error, sample.dof, confidence, sample.n, replicate_skewness(m, pull))
+    estimate = make(value, size * error, sample.dof, confidence, sample.n, replicate_skewness(m, pull))
     if sample.n > sample.groups:  # there is more than one trial in a replicate
         step = step_error(sample.x, m, pull, sample.groups, n, confidence)
-        found = wider(found, make(value, size * step, sample.dof, confidence, sample.n))
+        estimate = wider(estimate, make(value, size * step, sample.dof, confidence, sample.n))
     if not few_decide(of_trials, n):
-        return found
-    return wider(found, make(value, size * trial_error(m, pull, n), n - 1.0, confidence, sample.n, of_trials))
+        return estimate
+    return wider(estimate, make(value, size * trial_error(m, pull, n), n - 1.0, confidence, sample.n, of_trials))
 
 
 def _error(sample: Sample, gradient: Gradient) -> float:

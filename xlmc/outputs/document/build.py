@@ -94,8 +94,8 @@ def build(simulation: RunResult, wanted: Wanted, *, command: str | None = None) 
     words = vocabulary_of(workbook)
     for name, section in SECTIONS.items():
         is_wanted = name in wanted.sections if wanted.sections else not section.asked_for
-        found = list(section.make(material)) if is_wanted else []
-        blocks += [Heading(section.title(words)), *found] if found else []
+        result = list(section.make(material)) if is_wanted else []
+        blocks += [Heading(section.title(words)), *result] if result else []
     title = case["Title"] or f"Results of {workbook.name}"
     number = case["Case number"]
     cover = [(name, text) for name, text in case.fields.items() if name != "Title"]
@@ -148,8 +148,8 @@ def further_sections(simulation: RunResult, output: str) -> dict[str, tuple[str,
         return {}
     material = Material(simulation, make_record(simulation, None), _forecasts(Wanted(), simulation.model))
     words = vocabulary_of(simulation.model.workbook)
-    found = {name: (section.title(words), list(section.make(material))) for name, section in rows.items()}
-    return {name: (heading, blocks) for name, (heading, blocks) in found.items() if blocks}
+    result = {name: (section.title(words), list(section.make(material))) for name, section in rows.items()}
+    return {name: (heading, blocks) for name, (heading, blocks) in result.items() if blocks}
 
 
 def _forecasts(wanted: Wanted, model: CompiledModel) -> tuple[str, ...]:

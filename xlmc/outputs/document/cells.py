@@ -121,7 +121,7 @@ def count(value: int) -> Shown:
 
 
 def estimate(
-    found: Estimate,
+    result: Estimate,
     look: str = "number",
     error_look: str = "error",
     *,
@@ -132,34 +132,34 @@ def estimate(
     """Two cells: the value, and its standard error in the same digits; without an error, in those of `like`.
 
     Args:
-        found: the number and its error.
+        result: the number and its error.
         look: of the value.
         error_look: of the error.
         like: a number beside it.
         form: how the numbers are written.
         spread: whether it is a standard deviation or a difference; of dates it is then a span of time.
     """
-    digits = paired_format(like if found.error is None and like is not None else found, form)
-    error = _error_format(found, digits, form)
+    digits = paired_format(like if result.error is None and like is not None else result, form)
+    error = _error_format(result, digits, form)
     value = digits
     if spread and form.kind is Kind.DATE:
-        value = error = _span_format(found.value, found.error)
-    return [Shown(found.value, value, look, form.date1904), _error(found.error, error, error_look)]
+        value = error = _span_format(result.value, result.error)
+    return [Shown(result.value, value, look, form.date1904), _error(result.error, error, error_look)]
 
 
-def share(found: Estimate, look: str = "") -> list[Shown]:
+def share(result: Estimate, look: str = "") -> list[Shown]:
     """Two cells: a share of trials and its standard error, in percent."""
-    digits = share_format(found)
-    return [Shown(found.value, digits, look), _error(found.error, digits, "error")]
+    digits = share_format(result)
+    return [Shown(result.value, digits, look), _error(result.error, digits, "error")]
 
 
-def interval(found: Estimate, *, percent: bool = False, form: Form = PLAIN, spread: bool = False) -> list[Shown]:
+def interval(result: Estimate, *, percent: bool = False, form: Form = PLAIN, spread: bool = False) -> list[Shown]:
     """Two cells: the ends of the 95 % interval, in the digits of the value."""
-    digits = share_format(found) if percent else paired_format(found, form)
+    digits = share_format(result) if percent else paired_format(result, form)
     if spread and form.kind is Kind.DATE:
-        digits = _span_format(found.value, found.error)
-    shown = [replace(_error(end, digits, "error"), date1904=form.date1904) for end in found.interval or (None, None)]
-    decimals = None if percent or form.kind is Kind.DATE else _paired_decimals(found, form)
+        digits = _span_format(result.value, result.error)
+    shown = [replace(_error(end, digits, "error"), date1904=form.date1904) for end in result.interval or (None, None)]
+    decimals = None if percent or form.kind is Kind.DATE else _paired_decimals(result, form)
     if decimals is None or decimals >= 0:
         return shown
     return [replace(e, written=form.number(e.value, decimals)) if isinstance(e.value, float) else e for e in shown]
@@ -197,16 +197,16 @@ def _in_form(digits: str, form: Form) -> str:
     return "".join((f'"{before}"' if before else "", digits, f'"{after}"' if after else ""))
 
 
-def _error_format(found: Estimate, digits: str, form: Form = PLAIN) -> str:
+def _error_format(result: Estimate, digits: str, form: Form = PLAIN) -> str:
     """Return the format of the error beside a value; digits of its own where those of the value would show 0."""
     if form.kind is Kind.DATE:
-        return _span_format(found.error or 0.0, found.error)
-    decimals = _paired_decimals(found, form)
-    if found.error is None or decimals is None or "E" in digits or form.factor != 1.0:
+        return _span_format(result.error or 0.0, result.error)
+    decimals = _paired_decimals(result, form)
+    if result.error is None or decimals is None or "E" in digits or form.factor != 1.0:
         return digits
     bare = digits.split('"')[2] if digits.startswith('"') else digits.split('"')[0]
     enough = len(bare.partition(".")[2]) >= decimals - 1
-    return digits if enough else _in_form(_format(found.error, decimals), form)
+    return digits if enough else _in_form(_format(result.error, decimals), form)
 
 
 def _span_format(days: float, error: float | None) -> str:
@@ -287,16 +287,16 @@ def _format_number(value: float, number_format: str, date1904: bool = False) -> 
         return "noise"
     if number_format.startswith(AT_LEAST):
         return f"at least {_format_number(value, number_format.removeprefix(AT_LEAST))}"
-    found = _FORMAT.fullmatch(number_format)
-    if found is None:
+    match = _FORMAT.fullmatch(number_format)
+    if match is None:
         return _text_in_form(value, number_format, date1904)
-    decimals, ending = len(found["decimals"] or ""), found["ending"]
+    decimals, ending = len(match["decimals"] or ""), match["ending"]
     if ending == "E+00":
         return styled_text(value, f".{decimals}e") if value else "0"
     if ending == "%":
         return f"{fixed_text(100.0 * value, decimals)} %"
     return (
-        fixed_text(value, decimals) if found["grouped"] else styled_text(round(value, decimals) + 0.0, f".{decimals}f")
+        fixed_text(value, decimals) if match["grouped"] else styled_text(round(value, decimals) + 0.0, f".{decimals}f")
     )
 
 
@@ -306,11 +306,11 @@ def _text_in_form(value: float, number_format: str, date1904: bool) -> str:
     Raises:
         ValueError: the format does not write a number.
     """
-    found = _WITH_WORDS.fullmatch(number_format)
-    if found is not None:
-        text = _format_number(abs(value), found["digits"])
+    match = _WITH_WORDS.fullmatch(number_format)
+    if match is not None:
+        text = _format_number(abs(value), match["digits"])
         sign = "-" if value < 0.0 and any(digit in text for digit in "123456789") else ""
-        return f"{sign}{found['before'] or ''}{text}{found['after'] or ''}"
+        return f"{sign}{match['before'] or ''}{text}{match['after'] or ''}"
     try:
         shown = parse_format(number_format)
     except FormatError as error:

@@ -41,21 +41,21 @@ _MOST_MOVED: Final = 6
 
 def shape_chart(simulation: RunResult, name: str) -> Chart | None:
     """How often an assumption has each value, before filtering and accepted; None where all draws are one value."""
-    found = shapes_of(simulation, name)
-    if found is None:
+    shapes = shapes_of(simulation, name)
+    if shapes is None:
         return None
-    edges, before, accepted = (tuple(map(float, each)) for each in (found.edges, found.before, found.accepted))
+    edges, before, accepted = (tuple(map(float, each)) for each in (shapes.edges, shapes.before, shapes.accepted))
     shape = Shape(edges, before, accepted, simulation.model.input_forms.get(name, PLAIN))
     return Chart("", "", shape, f"{name}: before filtering pale, accepted as a line", 28.0)
 
 
-def influence_charts(found: ForecastSensitivity, most: int, *, sobol: bool = False) -> list[Chart]:
+def influence_charts(sensitivity: ForecastSensitivity, most: int, *, sobol: bool = False) -> list[Chart]:
     """Chart what each assumption has to do with a forecast, the largest influence on top; bars of noise are pale.
 
     Four charts: the variance explained; the dependence, or the total effects where there are Sobol indices; the rank
     correlation; and the contribution to variance, signed, as Crystal Ball shows it.
     """
-    of = list(zip(found.influences[:most], noise(found), strict=False))
+    of = list(zip(sensitivity.influences[:most], noise(sensitivity), strict=False))
     total = ("Total effect (Sobol)", "Share of the variance, alone and with others")
     dependence = ("Dependence", "0 %: none; 100 %: nothing else matters")
     others = [(each.assumption, each.total if sobol else each.dependence) for each, _ in of]
@@ -72,18 +72,20 @@ def influence_charts(found: ForecastSensitivity, most: int, *, sobol: bool = Fal
     ]
 
 
-def tornado_chart(found: ForecastSensitivity, most: int) -> Chart:
+def tornado_chart(sensitivity: ForecastSensitivity, most: int) -> Chart:
     """How far the forecast moves from its base case as one assumption moves alone."""
-    base = found.base or 0.0
+    base = sensitivity.base or 0.0
     bars = [
         Bar(
             bar.assumption,
             tuple((0.0, end - base, look) for end, look in ((bar.low, "light"), (bar.high, "dark")) if end is not None),
         )
-        for bar in found.bars[:most]
+        for bar in sensitivity.bars[:most]
     ]
     looks = (("light", "at 10 %"), ("dark", "at 90 %"))
-    return _bars("Tornado", _change("Change from the base case", found.change_units), bars, found.change_form, looks)
+    return _bars(
+        "Tornado", _change("Change from the base case", sensitivity.change_units), bars, sensitivity.change_form, looks
+    )
 
 
 def shares_chart(figure: Figure) -> Chart:
@@ -150,20 +152,20 @@ def acceptance_chart(limit: FilterLimit) -> Chart:
     return _moved("Share of trials accepted", limit, shares, "Share", SHARE)
 
 
-def _moved(title: str, limit: FilterLimit, found: dict[str, list[Estimate]], upwards: str, form: Form) -> Chart:
+def _moved(title: str, limit: FilterLimit, result: dict[str, list[Estimate]], upwards: str, form: Form) -> Chart:
     """Chart numbers at each value of a limit, with a line for each name."""
     lines = tuple(
         Line(name, tuple((p.limit, each.value, each.error) for p, each in zip(limit.points, numbers, strict=True)))
-        for name, numbers in found.items()
+        for name, numbers in result.items()
     )
     data = Lines(lines, upwards, dots=True, now=limit.limit, from_zero=True, form_across=limit.form, form_upwards=form)
-    return Chart(title, f"Limit: {limit.filter} {limit.relation}", data, f"{title}: {', '.join(found)}")
+    return Chart(title, f"Limit: {limit.filter} {limit.relation}", data, f"{title}: {', '.join(result)}")
 
 
-def _part(found: Estimate, whole: float) -> Estimate:
+def _part(estimate: Estimate, whole: float) -> Estimate:
     if whole <= 0.0:
         return Estimate(math.nan)
-    return Estimate(found.value / whole, None if found.error is None else found.error / whole)
+    return Estimate(estimate.value / whole, None if estimate.error is None else estimate.error / whole)
 
 
 def _change(what: str, units: str) -> str:
@@ -173,11 +175,11 @@ def _change(what: str, units: str) -> str:
 def _bars(
     title: str, across: str, bars: list[Bar], form: Form = PLAIN, looks: tuple[tuple[str, str], ...] = ()
 ) -> Chart:
-    said = f"{title}: {', '.join(bar.name for bar in bars)}"
-    return Chart(title, across, Bars(tuple(bars), form, looks), said, 125.0)
+    message = f"{title}: {', '.join(bar.name for bar in bars)}"
+    return Chart(title, across, Bars(tuple(bars), form, looks), message, 125.0)
 
 
-def _bar(name: str, found: Estimate, pale: bool) -> Bar:
-    value = found.value if math.isfinite(found.value) else 0.0
-    whisker = None if found.error is None else (value - found.error, value + found.error)
+def _bar(name: str, estimate: Estimate, pale: bool) -> Bar:
+    value = estimate.value if math.isfinite(estimate.value) else 0.0
+    whisker = None if estimate.error is None else (value - estimate.error, value + estimate.error)
     return Bar(name, ((0.0, value, "light" if pale else "dark"),), whisker)

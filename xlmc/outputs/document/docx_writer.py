@@ -133,10 +133,10 @@ class _Writer:
 
     def _cover(self) -> None:
         self._file.add_heading(printable(self._drawn.title), 0)
-        for label, said in self._drawn.cover:
+        for label, message in self._drawn.cover:
             paragraph = self._file.add_paragraph()
             paragraph.add_run(f"{printable(label)}: ").bold = True
-            paragraph.add_run(printable(said))
+            paragraph.add_run(printable(message))
 
     def _paragraph(self, text: str, size: float, *, bold: bool = False) -> Any:
         made = self._file.add_paragraph()

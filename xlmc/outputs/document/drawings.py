@@ -62,42 +62,42 @@ def forecast_drawing(figure: Figure, result: ForecastResult, width: float) -> Dr
     most = float((bins.inside + bins.outside).max())
     up = scale_of([0.0, 1.05 * max(most, 1.0)], middle, top, most=5)
     up = Scale(0.0, up.high, middle, top, up.step)
-    found = [*_grid(up, left, right, "")]
+    results = [*_grid(up, left, right, "")]
     for edge, upper, inside, outside in zip(bins.edges, bins.upper_edges, bins.inside, bins.outside, strict=True):
         x, wide = across(float(edge)), across(float(upper)) - across(float(edge))
         total, central = float(inside + outside), float(inside)
-        found += [_rect(x, up(total), wide, middle - up(total), LIGHT)] if total else []
-        found += [_rect(x, up(central), wide, middle - up(central), DARK)] if central else []
-    found += [line_to(left, middle, right, middle, INK), text_at(16, (top + middle) / 2, "Trials", turned=True)]
+        results += [_rect(x, up(total), wide, middle - up(total), LIGHT)] if total else []
+        results += [_rect(x, up(central), wide, middle - up(central), DARK)] if central else []
+    results += [line_to(left, middle, right, middle, INK), text_at(16, (top + middle) / 2, "Trials", turned=True)]
     share = Scale(0.0, 100.0, bottom, middle + 16, 25.0)
-    found += _grid(share, left, right, " %")
+    results += _grid(share, left, right, " %")
     low, high = (across(_near(end.value, first, last)) for end in (answer.low, answer.high))
-    found.append(_rect(low, share(100.0), high - low, bottom - share(100.0), LIGHT, opacity=0.5))
+    results.append(_rect(low, share(100.0), high - low, bottom - share(100.0), LIGHT, opacity=0.5))
     levels = np.linspace(0.0, 1.0, _POINTS)
     values = result.sample.quantile(levels)
     points = [
         (across(_near(float(v), first, last)), share(100.0 * float(q))) for v, q in zip(values, levels, strict=True)
     ]
-    found.append(path_of(points, DARK, 1.6))
-    found.append(text_at(16, (share(100.0) + bottom) / 2, "Not above", turned=True))
+    results.append(path_of(points, DARK, 1.6))
+    results.append(text_at(16, (share(100.0) + bottom) / 2, "Not above", turned=True))
     if answer.threshold is not None and first <= answer.threshold <= last:
         x = across(answer.threshold)
-        found += [line_to(x, top, x, bottom, _THRESHOLD, 1.0, dashed=True)]
+        results += [line_to(x, top, x, bottom, _THRESHOLD, 1.0, dashed=True)]
         limit = f"threshold {answer.form.number(answer.threshold)}"
-        found.append(text_at(x + 3, top + 8, limit, anchor="start", fill=_THRESHOLD))
+        results.append(text_at(x + 3, top + 8, limit, anchor="start", fill=_THRESHOLD))
     mean = across(_near(answer.mean.value, first, last))
-    found += [line_to(mean, top, mean, bottom, INK, 1.0)]
-    found += [line_to(left, bottom, right, bottom, INK)]
+    results += [line_to(mean, top, mean, bottom, INK, 1.0)]
+    results += [line_to(left, bottom, right, bottom, INK)]
     middles = 0.0 if bins.names is None else bins.width / 2.0
     edges = [(across(float(edge) + middles), label) for edge, label in _labelled(bins)]
     for x, label in _apart(edges):
-        found += [line_to(x, bottom, x, bottom + 4, INK), text_at(x, bottom + 15, label)]
-    found.append(text_at((left + right) / 2, bottom + 32, answer.units or "value"))
-    said = (
+        results += [line_to(x, bottom, x, bottom + 4, INK), text_at(x, bottom + 15, label)]
+    results.append(text_at((left + right) / 2, bottom + 32, answer.units or "value"))
+    message = (
         f"{answer.name}: above, how many accepted trials lie in each interval; below, the share of them that is not "
         f"above each value. Dark: the central {percent(answer.share)}. The vertical line is the mean."
     )
-    return drawing(found, whole, bottom + 40, said, width)
+    return drawing(results, whole, bottom + 40, message, width)
 
 
 def _labelled(bins: Histogram) -> list[tuple[float, str]]:
@@ -134,28 +134,28 @@ def _bars(chart: Chart, shown: Bars) -> Drawing:
     across = scale_of(ends, left, right, form=shown.form)
     if min(ends) == 0.0:
         across = replace(across, low=0.0)
-    found = _title(chart)
-    found += [line_to(across(tick), top, across(tick), bottom, GRID) for tick in across.ticks]
-    found += [text_at(across(tick), bottom + 13, text) for tick, text in across.apart]
+    result = _title(chart)
+    result += [line_to(across(tick), top, across(tick), bottom, GRID) for tick in across.ticks]
+    result += [text_at(across(tick), bottom + 13, text) for tick, text in across.apart]
     for index, bar in enumerate(shown.bars):
-        found += _bar(bar, top + row * index, row, left, across)
-    found.append(line_to(across(0.0), top, across(0.0), bottom, INK))
-    found.append(text_at((left + right) / 2, bottom + 28, chart.across_and_looks))
-    return drawing(found, 570.0, bottom + 34, chart.said, chart.width)
+        result += _bar(bar, top + row * index, row, left, across)
+    result.append(line_to(across(0.0), top, across(0.0), bottom, INK))
+    result.append(text_at((left + right) / 2, bottom + 28, chart.across_and_looks))
+    return drawing(result, 570.0, bottom + 34, chart.said, chart.width)
 
 
 def _bar(bar: Bar, top: float, row: float, left: float, across: Scale) -> list[str]:
-    found = [text_at(left - 6, top + 12, short_name(bar.name, _LONGEST), anchor="end")]
+    result = [text_at(left - 6, top + 12, short_name(bar.name, _LONGEST), anchor="end")]
     for first, last, look in bar.pieces:
         if math.isfinite(first) and math.isfinite(last):
             start, stop = sorted((across(first), across(last)))
-            found.append(_rect(start, top + 3, stop - start, row - 6, _FILLS[look]))
+            result.append(_rect(start, top + 3, stop - start, row - 6, _FILLS[look]))
     if bar.whisker is not None and all(map(math.isfinite, bar.whisker)):
         start, stop = map(across, bar.whisker)
         middle = top + row / 2
-        found.append(line_to(start, middle, stop, middle, INK))
-        found += [line_to(end, middle - 3, end, middle + 3, INK) for end in (start, stop)]
-    return found
+        result.append(line_to(start, middle, stop, middle, INK))
+        result += [line_to(end, middle - 3, end, middle + 3, INK) for end in (start, stop)]
+    return result
 
 
 def _lines(chart: Chart, shown: Lines) -> Drawing:
@@ -169,17 +169,17 @@ def _lines(chart: Chart, shown: Lines) -> Drawing:
         y = scale_of(shown.heights, bottom, top, form=shown.form_upwards)
     left = max(60.0, 34.0 + _CHARACTER * max((len(text) for _, text in y.marks), default=0))
     x = scale_of([*known, *(point[0] for point in points)], left, right, form=shown.form_across)
-    found = _title(chart)
+    result = _title(chart)
     for tick, text in y.marks:
-        found += [line_to(left, y(tick), right, y(tick), GRID), text_at(left - 6, y(tick) + 4, text, anchor="end")]
-    found += [text_at(x(tick), bottom + 15, text) for tick, text in x.apart]
-    found.append(line_to(left, bottom, right, bottom, INK))
+        result += [line_to(left, y(tick), right, y(tick), GRID), text_at(left - 6, y(tick) + 4, text, anchor="end")]
+    result += [text_at(x(tick), bottom + 15, text) for tick, text in x.apart]
+    result.append(line_to(left, bottom, right, bottom, INK))
     if shown.now is not None:
-        found.append(line_to(x(shown.now), top, x(shown.now), bottom, INK, dashed=True))
+        result.append(line_to(x(shown.now), top, x(shown.now), bottom, INK, dashed=True))
     if shown.cloud is not None:
-        found += [_dot(x(a), y(b)) for a, b, _ in _finite(shown.cloud)]
+        result += [_dot(x(a), y(b)) for a, b, _ in _finite(shown.cloud)]
         at = top + 14 + 18 * len(shown.lines)
-        found += [
+        result += [
             _dot(right + 23, at),
             text_at(right + 40, at + 4, short_name(shown.cloud.name, _BESIDE), anchor="start"),
         ]
@@ -187,18 +187,18 @@ def _lines(chart: Chart, shown: Lines) -> Drawing:
         colour, at = COLOURS[index % len(COLOURS)], top + 14 + 18 * index
         width = 1.4 if index else 2.2
         ends = _finite(line)
-        found.append(path_of([(x(a), y(b)) for a, b, _ in ends], colour, width) if ends else "")
+        result.append(path_of([(x(a), y(b)) for a, b, _ in ends], colour, width) if ends else "")
         for a, b, error in ends if shown.dots else ():
-            found += [line_to(x(a), y(b - error), x(a), y(b + error), INK)] if error else []
-            found.append(f'<circle cx="{x(a):.2f}" cy="{y(b):.2f}" r="2.5" fill="{colour}"/>')
-        found += [
+            result += [line_to(x(a), y(b - error), x(a), y(b + error), INK)] if error else []
+            result.append(f'<circle cx="{x(a):.2f}" cy="{y(b):.2f}" r="2.5" fill="{colour}"/>')
+        result += [
             line_to(right + 12, at, right + 34, at, colour, width),
             text_at(right + 40, at + 4, short_name(line.name, _BESIDE), anchor="start"),
         ]
-    found.append(text_at((left + right) / 2, bottom + 34, chart.across))
-    found.append(text_at(14, (top + bottom) / 2, shown.upwards, turned=True))
+    result.append(text_at((left + right) / 2, bottom + 34, chart.across))
+    result.append(text_at(14, (top + bottom) / 2, shown.upwards, turned=True))
     names = max((len(short_name(line.name, _BESIDE)) for line in shown.all), default=0)
-    return drawing(found, max(570.0, right + 44.0 + _CHARACTER * names), bottom + 42, chart.said, chart.width)
+    return drawing(result, max(570.0, right + 44.0 + _CHARACTER * names), bottom + 42, chart.said, chart.width)
 
 
 def _dot(x: float, y: float) -> str:
@@ -222,21 +222,21 @@ def _shape(chart: Chart, shown: Shape) -> Drawing:
     width, height, bottom = 150.0, 48.0, 34.0
     across = Scale(low, high, 1.0, width - 1.0, 1.0)
     up = Scale(0.0, most or 1.0, bottom, 2.0, 1.0)
-    found = []
+    result = []
     outline: list[tuple[float, float]] = []
     for index, (before, accepted) in enumerate(zip(shown.before, shown.accepted, strict=True)):
         x, upper = across(shown.edges[index]), across(shown.edges[index + 1])
-        found.append(_rect(x, up(before), upper - x, bottom - up(before), LIGHT))
+        result.append(_rect(x, up(before), upper - x, bottom - up(before), LIGHT))
         outline += [(x, up(accepted)), (upper, up(accepted))]
-    found += [
+    result += [
         path_of([(1.0, bottom), *outline, (width - 1.0, bottom)], DARK, 1.3),
         line_to(1, bottom, width - 1, bottom, INK),
     ]
     plain = shown.form == PLAIN
     first, last = (end_text(end, high - low) if plain else shown.form.number(end) for end in (low, high))
-    found.append(text_at(1.0, height - 2, first, anchor="start", size=13))
-    found.append(text_at(width - 1.0, height - 2, last, anchor="end", size=13))
-    return drawing(found, width, height, f"{chart.said}, from {first} to {last}", chart.width)
+    result.append(text_at(1.0, height - 2, first, anchor="start", size=13))
+    result.append(text_at(width - 1.0, height - 2, last, anchor="end", size=13))
+    return drawing(result, width, height, f"{chart.said}, from {first} to {last}", chart.width)
 
 
 def end_text(end: float, span: float) -> str:
@@ -254,25 +254,25 @@ def _near(value: float, low: float, high: float) -> float:
 
 
 def _grid(scale: Scale, left: float, right: float, unit: str) -> list[str]:
-    found = []
+    result = []
     for tick in scale.ticks:
-        found.append(line_to(left, scale(tick), right, scale(tick), GRID))
-        found.append(text_at(left - 6, scale(tick) + 4, f"{fixed_text(tick, 0)}{unit}", anchor="end"))
-    return found
+        result.append(line_to(left, scale(tick), right, scale(tick), GRID))
+        result.append(text_at(left - 6, scale(tick) + 4, f"{fixed_text(tick, 0)}{unit}", anchor="end"))
+    return result
 
 
-def drawing(found: Iterable[str], width: float, height: float, said: str, printed: float) -> Drawing:
+def drawing(result: Iterable[str], width: float, height: float, message: str, printed: float) -> Drawing:
     """Return SVG elements as one drawing.
 
     Args:
-        found: the elements.
+        result: the elements.
         width: of the drawing area, in its own units.
         height: of the drawing area, in its own units.
-        said: what it shows, for readers who cannot see it.
+        message: what it shows, for readers who cannot see it.
         printed: its width on paper, in millimetres.
     """
     size = f'width="{width:g}" height="{height:g}" viewBox="0 0 {width:g} {height:g}"'
-    return Drawing(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(found)}</svg>', said, printed)
+    return Drawing(f'<svg xmlns="http://www.w3.org/2000/svg" {size}>{"".join(result)}</svg>', message, printed)
 
 
 def _rect(x: float, y: float, width: float, height: float, fill: str, *, opacity: float = 1.0) -> str:
@@ -335,16 +335,16 @@ class Scale:
     def marks(self) -> list[tuple[float, str]]:
         """The ticks with their texts, which have a true minus sign where they are numbers."""
         decimals = max(-two_digit_exponent(self.step), 0)
-        found = [(tick, self.form.tick(tick, decimals)) for tick in self.ticks]
-        return found if self.form.kind is Kind.DATE else [(tick, text.replace("-", "−")) for tick, text in found]
+        result = [(tick, self.form.tick(tick, decimals)) for tick in self.ticks]
+        return result if self.form.kind is Kind.DATE else [(tick, text.replace("-", "−")) for tick, text in result]
 
     @property
     def apart(self) -> list[tuple[float, str]]:
         """As many of the ticks as leave their texts room beside each other."""
-        found = self.marks
-        wide = _CHARACTER * max((len(text) for _, text in found), default=0) + _CHARACTER
+        result = self.marks
+        wide = _CHARACTER * max((len(text) for _, text in result), default=0) + _CHARACTER
         room = abs(self.stop - self.start) * (self.step / (self.high - self.low))
-        return found[:: max(math.ceil(wide / room), 1)]
+        return result[:: max(math.ceil(wide / room), 1)]
 
 
 _CHARACTER = 7.0

@@ -41,8 +41,8 @@ def drawn_trials(simulation: RunResult) -> Chart | None:
     if not simulation.accepted:
         return None
     columns = _columns(simulation)
-    found = (_over(simulation, columns, lines, axes) for lines, axes in scenes(simulation.model.workbook))
-    return next((chart for chart in found if chart is not None), None)
+    result = (_over(simulation, columns, lines, axes) for lines, axes in scenes(simulation.model.workbook))
+    return next((chart for chart in result if chart is not None), None)
 
 
 def _over(
@@ -60,8 +60,8 @@ def _over(
         if len(set(points)) > 1:
             cloud = Line("Accepted trials", tuple(points))
             named = " and ".join(f"“{line.name}”" for line in curves)
-            said = f"{counted_text(len(points), 'accepted trial')} over {named}"
-            return Chart("", axes[0], Lines(curves, axes[1], cloud=cloud), said)
+            message = f"{counted_text(len(points), 'accepted trial')} over {named}"
+            return Chart("", axes[0], Lines(curves, axes[1], cloud=cloud), message)
     return None
 
 
@@ -78,7 +78,7 @@ def _columns(simulation: RunResult) -> dict[Cell, NDArray[np.float64]]:
 
 def _quantities(workbook: Workbook, where: tuple[str, str]) -> list[Cell]:
     """Return the cells that the formulas of a point name; those of other formulas are left out."""
-    found = []
+    cells = []
     for reference in where:
         sheet, address = split_sheet(reference)
         place = parse_address(address.replace("$", "").partition(":")[0], sheet)
@@ -86,10 +86,10 @@ def _quantities(workbook: Workbook, where: tuple[str, str]) -> list[Cell]:
         if formula is None or isinstance(place, Area):
             continue
         try:
-            found.append(cell_of_reference(workbook, formula.text, place.sheet, place))
+            cells.append(cell_of_reference(workbook, formula.text, place.sheet, place))
         except (DefinitionError, WorkbookError):
             continue  # a formula of its own: no quantity of the run
-    return found
+    return cells
 
 
 def _points(simulation: RunResult, x: NDArray[np.float64], y: NDArray[np.float64]) -> list[tuple[float, float]]:

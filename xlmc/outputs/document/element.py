@@ -23,9 +23,9 @@ class Html:
         return Html(self.source + other.source)
 
     @staticmethod
-    def of_svg(svg: str, said: str, look: str) -> Html:
+    def of_svg(svg: str, message: str, look: str) -> Html:
         """Return an SVG drawing, whose texts are escaped already, with its CSS class and what it shows."""
-        named = f'<svg class="{look}" role="img" aria-label="{escape(said)}" '
+        named = f'<svg class="{look}" role="img" aria-label="{escape(message)}" '
         return Html(svg.replace("<svg ", named, 1))
 
 

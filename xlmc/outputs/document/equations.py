@@ -34,19 +34,19 @@ def equations_of(model: CompiledModel) -> list[Equation]:
 
     A row counts if one of its cells is a forecast or a filter, or is read by one.
     """
-    found: list[Equation] = []
+    equations: list[Equation] = []
     needed: dict[str, set[int]] = {}
     asked = {each.cell for each in model.forecasts} | {each.cell for each in model.filters}
     for cell in model.lowering.read | asked:
         needed.setdefault(cell.sheet, set()).add(cell.row)
     for name in model.workbook.sheets:  # others are not parsed for it
         if name in needed:
-            found += _of_sheet(model.workbook, model.workbook.sheets[name], needed[name])
+            equations += _of_sheet(model.workbook, model.workbook.sheets[name], needed[name])
     feeding = model.definitions.feeding
     for file, book in {} if feeding is None else feeding.sources.items():
         for name, sheet in model.workbook.links[f"[{file}]"].sheets.items():
-            found += _of_sheet(book, sheet, needed.get(name, set()))
-    return found
+            equations += _of_sheet(book, sheet, needed.get(name, set()))
+    return equations
 
 
 def _of_sheet(workbook: Workbook, sheet: Sheet, needed: set[int]) -> Iterator[Equation]:
@@ -56,15 +56,15 @@ def _of_sheet(workbook: Workbook, sheet: Sheet, needed: set[int]) -> Iterator[Eq
         head = as_text(content.value).casefold() if isinstance(content.value, str) else ""
         if head in _HEADS and column <= _COLUMNS:
             heads.setdefault(row, {}).setdefault(head, column)
-    starts = sorted(row for row, found in heads.items() if found.keys() >= _NEEDED)
+    starts = sorted(row for row, result in heads.items() if result.keys() >= _NEEDED)
     if not starts:
         return
     below = {row: heads[max(above)] for row in sorted(needed) if (above := [start for start in starts if start < row])}
     spots = [(row, at) for row, columns in below.items() for at in columns.values() if (row, at) in cells]
     missing = [Cell(sheet.name, *spot) for spot in spots if cells[spot].is_uncalculated]
     calculated = {cell[1:]: text for cell, text in calculated_texts(workbook, missing).items()} if missing else {}
-    said = {spot: calculated.get(spot) or as_text(cells[spot].value) for spot in spots}
+    messages = {spot: calculated.get(spot) or as_text(cells[spot].value) for spot in spots}
     for row, columns in below.items():
-        texts = {head: said.get((row, at), "") for head, at in columns.items()}
+        texts = {head: messages.get((row, at), "") for head, at in columns.items()}
         if texts["equation"]:
             yield Equation(*(texts.get(head, "") for head in _HEADS))

@@ -46,8 +46,8 @@ def _html(block: Block) -> Html:
         case Heading(text, level):
             return element(f"h{level + 1}", text)
         case Paragraph(text, look, phrases):
-            said = [element("bdi", each.text) if each.is_name else each.text for each in phrases] or [text]
-            return element("p", *said, class_=_LOOKS.get(look, look), role="alert" if look == "warning" else None)
+            messages = [element("bdi", each.text) if each.is_name else each.text for each in phrases] or [text]
+            return element("p", *messages, class_=_LOOKS.get(look, look), role="alert" if look == "warning" else None)
         case Bullets(_, look, leads):
             items = (element("li", *_led(lead, rest)) for lead, rest in block.led)
             return element("ul", *items, class_="statements" if leads else _LOOKS.get(look, look))
@@ -93,8 +93,8 @@ def _table(table: Table) -> Html:
         element("thead", element("tr", *heads)) if heads else EMPTY,
         element("tbody", *body),
     )
-    said = table.caption.removesuffix(".")
-    title = element("h2", table.title) if table.title else element("h3", said) if said else EMPTY
+    message = table.caption.removesuffix(".")
+    title = element("h2", table.title) if table.title else element("h3", message) if message else EMPTY
     return title + element("div", inner, class_="wide-table")
 
 
@@ -139,13 +139,13 @@ def _cell(cell: Content, index: int, at_right: frozenset[int]) -> Html:
 
 def _measured_html(cell: Measured) -> Html:
     """Return a number and its error, which carry their full values."""
-    if cell.found is None or not math.isfinite(cell.found.value):
+    if cell.estimate is None or not math.isfinite(cell.estimate.value):
         return element("span", cell.text)
     value, _, error = cell.text.partition(" ± ")
-    shown = number(cell.found.value, value)
-    if not error or cell.found.error is None:
-        return number(cell.found.value, cell.text)
-    beside = number(cell.found.error, error)
+    shown = number(cell.estimate.value, value)
+    if not error or cell.estimate.error is None:
+        return number(cell.estimate.value, cell.text)
+    beside = number(cell.estimate.error, error)
     if cell.look in ("answer", "range"):
         return element("span", shown) + Html(" ") + element("span", "±\u00a0", beside)
     return shown + Html(" ±\u00a0") + beside
@@ -173,11 +173,11 @@ def number(value: float, shown: str) -> Html:
     return element("data", shown, value=plain_text(value))
 
 
-def estimate_html(found: Estimate, written: Callable[[Estimate], str] = estimate_text) -> Html:
+def estimate_html(estimate: Estimate, written: Callable[[Estimate], str] = estimate_text) -> Html:
     """`11.799 ± 0.013` with the full value; a dash where there is no number."""
-    return number(found.value, written(found)) if math.isfinite(found.value) else element("span", NONE)
+    return number(estimate.value, written(estimate)) if math.isfinite(estimate.value) else element("span", NONE)
 
 
-def share_html(found: Estimate) -> Html:
+def share_html(estimate: Estimate) -> Html:
     """`12.3 ± 0.5 %` with the full value; a dash where there is no number."""
-    return number(found.value, share_text(found)) if math.isfinite(found.value) else element("span", NONE)
+    return number(estimate.value, share_text(estimate)) if math.isfinite(estimate.value) else element("span", NONE)

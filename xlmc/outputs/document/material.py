@@ -68,17 +68,17 @@ def same_answers(simulation: RunResult, names: Iterable[str]) -> dict[str, tuple
     Returns:
         Forecast -> the later ones that are the same.
     """
-    found: dict[str, tuple[str, ...]] = {}
+    results: dict[str, tuple[str, ...]] = {}
     for name in names:
         result = simulation.results[name]
         if result.kind in NOT_ROUNDED or not result.statistics.standard_deviation.value > 0.0:
             continue
-        first = next((each for each in found if _is_same(simulation.results[each], result)), None)
+        first = next((each for each in results if _is_same(simulation.results[each], result)), None)
         if first is None:
-            found[name] = ()
+            results[name] = ()
         else:
-            found[first] = (*found[first], name)
-    return {name: others for name, others in found.items() if others}
+            results[first] = (*results[first], name)
+    return {name: others for name, others in results.items() if others}
 
 
 def _is_same(one: ForecastResult, other: ForecastResult) -> bool:

@@ -29,7 +29,7 @@ class Measured:
     """A number with its standard error.
 
     Attributes:
-        found: the number; None where there is none.
+        estimate: the number; None where there is none.
         what: `number`; `share` of trials; `spread`, a standard deviation; `change`, a difference of numbers; `points`,
             a difference of shares, in percentage points.
         form: how a number is written.
@@ -42,7 +42,7 @@ class Measured:
         at_least: it is a lower bound.
     """
 
-    found: Estimate | None
+    estimate: Estimate | None
     what: str = "number"
     form: Form = PLAIN
     look: str = "number"
@@ -56,19 +56,21 @@ class Measured:
     @property
     def text(self) -> str:
         """Write the number and its error: `11.799 ± 0.013`, `5.44 ± 0.32 %`, `+0.59 ± 0.03`."""
-        found = self.found
-        if self.noise and found is not None:
+        estimate = self.estimate
+        if self.noise and estimate is not None:
             return "noise"
-        if found is None or math.isnan(found.value) or self.written:
+        if estimate is None or math.isnan(estimate.value) or self.written:
             return self.written or self.nothing
         match self.what:
             case "share":
-                text = share_text(found)
+                text = share_text(estimate)
             case "points":
-                text = format_estimate(100.0 * found.value, None if found.error is None else 100.0 * found.error)
+                text = format_estimate(
+                    100.0 * estimate.value, None if estimate.error is None else 100.0 * estimate.error
+                )
             case what:
-                text = self.form.spread(found) if what in _SPANS else self.form.estimate(found)
-        is_above = self.what in _SIGNED and found.value > 0.0 and re.search("[1-9]", text.partition("±")[0])
+                text = self.form.spread(estimate) if what in _SPANS else self.form.estimate(estimate)
+        is_above = self.what in _SIGNED and estimate.value > 0.0 and re.search("[1-9]", text.partition("±")[0])
         least = "at least " if self.at_least and text else ""
         return f"+{text}" if is_above else f"{least}{text}" or self.nothing
 
@@ -76,7 +78,7 @@ class Measured:
     def shown(self) -> Sequence[Shown]:
         """Return its cells on a sheet: the number and its error, and the ends of its interval where they are shown."""
         value, *others = self._cells
-        if self.noise and self.found is not None:
+        if self.noise and self.estimate is not None:
             value = replace(value, format=NOISE)
         elif self.at_least:
             value = replace(value, format=AT_LEAST + value.format)
@@ -84,21 +86,21 @@ class Measured:
 
     @property
     def _cells(self) -> Sequence[Shown]:
-        found = self.found
+        estimate = self.estimate
         count = 4 if self.interval else 2
-        if found is None:
+        if estimate is None:
             return [Shown(self.nothing) if self.nothing else BLANK, *[BLANK] * (count - 1)]
         if self.what in _SHARES:
-            if self.interval and found.error == 0.0 and found.value in (0.0, 1.0):
-                return [Shown(found.value, "0%"), *[BLANK] * (count - 1)]
-            ends = cells.interval(found, percent=True) if self.interval else []
-            return [*cells.share(found, self.look), *ends]
+            if self.interval and estimate.error == 0.0 and estimate.value in (0.0, 1.0):
+                return [Shown(estimate.value, "0%"), *[BLANK] * (count - 1)]
+            ends = cells.interval(estimate, percent=True) if self.interval else []
+            return [*cells.share(estimate, self.look), *ends]
         spread = self.what in _SPANS
-        ends = cells.interval(found, form=self.form, spread=spread) if self.interval else []
+        ends = cells.interval(estimate, form=self.form, spread=spread) if self.interval else []
         error = "second error" if self.look == "second number" else "error"
-        return [*cells.estimate(found, self.look, error, like=self.like, form=self.form, spread=spread), *ends]
+        return [*cells.estimate(estimate, self.look, error, like=self.like, form=self.form, spread=spread), *ends]
 
 
-def counted_share(found: Estimate | None) -> Measured:
+def counted_share(estimate: Estimate | None) -> Measured:
     """Return a share of trials; a sheet shows the ends of its interval, too."""
-    return Measured(found, "share", interval=True)
+    return Measured(estimate, "share", interval=True)

@@ -145,9 +145,9 @@ class Bars:
     @property
     def ends(self) -> list[float]:
         """All ends of pieces and whiskers that are numbers."""
-        found = [end for bar in self.bars for piece in bar.pieces for end in piece[:2]]
-        found += [end for bar in self.bars for end in bar.whisker or ()]
-        return [end for end in found if math.isfinite(end)]
+        result = [end for bar in self.bars for piece in bar.pieces for end in piece[:2]]
+        result += [end for bar in self.bars for end in bar.whisker or ()]
+        return [end for end in result if math.isfinite(end)]
 
 
 @dataclass(frozen=True, slots=True)
@@ -192,8 +192,8 @@ class Lines:
     @property
     def ends(self) -> tuple[float, float]:
         """The least and the largest x."""
-        found = [point[0] for line in self.all for point in line.points]
-        return min(found), max(found)
+        result = [point[0] for line in self.all for point in line.points]
+        return min(result), max(result)
 
     @property
     def heights(self) -> list[float]:
@@ -294,8 +294,8 @@ class Table:
     @property
     def at_right(self) -> frozenset[int]:
         """The columns whose cells stand at the right."""
-        found = ((index, cell) for row in self.rows for index, cell in enumerate(row))
-        return frozenset(self.right) | {index for index, cell in found if _is_number(cell)}
+        result = ((index, cell) for row in self.rows for index, cell in enumerate(row))
+        return frozenset(self.right) | {index for index, cell in result if _is_number(cell)}
 
     @property
     def relative_widths(self) -> tuple[float, ...]:
@@ -343,7 +343,7 @@ class Table:
         return whole if sum(whole) <= _SMALL * _LINE else self._words(whole=False)
 
     def _words(self, *, whole: bool) -> list[float]:
-        found = [float(max(map(len, head.split()), default=0)) for head in self.heads] or [0.0] * self.columns
+        result = [float(max(map(len, head.split()), default=0)) for head in self.heads] or [0.0] * self.columns
         at_right = self.at_right
         for row in self.rows:
             for index, cell in enumerate(row):
@@ -351,8 +351,8 @@ class Table:
                 words = _AT_LINES.split(text) if whole and index in at_right else text.split()
                 wide = _DIGIT if index in at_right else 1.0
                 longest = max((len(word) for word in words if len(word) < _WIDEST), default=0)
-                found[index] = max(found[index], wide * longest)
-        return [count + _BESIDE for count in found]
+                result[index] = max(result[index], wide * longest)
+        return [count + _BESIDE for count in result]
 
 
 def _lines(cell: Content, room: float) -> int:
@@ -366,16 +366,16 @@ def _lines(cell: Content, room: float) -> int:
 def _enough(widths: Sequence[float], least: Sequence[float]) -> tuple[float, ...]:
     """Return widths as shares of their sum, none below its least share, as far as there is room for that."""
     whole = sum(widths)
-    found = [width / whole for width in widths]
+    result = [width / whole for width in widths]
     raised: set[int] = set()
-    while low := {index for index, share in enumerate(found) if index not in raised and share < least[index]}:
+    while low := {index for index, share in enumerate(result) if index not in raised and share < least[index]}:
         raised |= low
-        left, rest = 1.0 - sum(least[index] for index in raised), [i for i in range(len(found)) if i not in raised]
+        left, rest = 1.0 - sum(least[index] for index in raised), [i for i in range(len(result)) if i not in raised]
         if left <= 0.0 or not rest:
             return tuple(each / sum(least) for each in least)
         free = sum(widths[index] for index in rest)
-        found = [least[i] if i in raised else widths[i] / free * left for i in range(len(found))]
-    return tuple(found)
+        result = [least[i] if i in raised else widths[i] / free * left for i in range(len(result))]
+    return tuple(result)
 
 
 _LETTERS, _SMALLEST = 8.5, 6.0
@@ -413,19 +413,19 @@ def cell_text(cell: Content) -> str:
 Block = Heading | Paragraph | Bullets | Code | Figure | Table
 
 
-def blocks_of(found: Iterable[str | Block]) -> tuple[Block, ...]:
+def blocks_of(result: Iterable[str | Block]) -> tuple[Block, ...]:
     """Blocks, of which paragraphs may be given as their texts."""
-    return tuple(Paragraph(each) if isinstance(each, str) else each for each in found)
+    return tuple(Paragraph(each) if isinstance(each, str) else each for each in result)
 
 
 def _narrow(blocks: Sequence[Block]) -> tuple[Figure, ...]:
     """Return the narrow figures that these blocks begin with."""
-    found: list[Figure] = []
+    figures: list[Figure] = []
     for each in blocks:
         if not isinstance(each, Figure) or not each.is_half:
             break
-        found.append(each)
-    return tuple(found)
+        figures.append(each)
+    return tuple(figures)
 
 
 @dataclass(frozen=True, slots=True)
@@ -459,21 +459,21 @@ class Document:
     @property
     def with_next(self) -> list[tuple[Block | tuple[Figure, ...], Block | None]]:
         """Every block with the one after it; narrow figures that follow each other stand side by side, two in a row."""
-        found: list[tuple[Block | tuple[Figure, ...], Block | None]] = []
+        result: list[tuple[Block | tuple[Figure, ...], Block | None]] = []
         rest = self.blocks
         while rest:
             narrow = _narrow(rest[:2])
             rest, first = rest[len(narrow) or 1 :], narrow or rest[0]
-            found.append((first, rest[0] if rest else None))
-        return found
+            result.append((first, rest[0] if rest else None))
+        return result
 
     @property
     def pictures(self) -> list[Picture]:
         """Every picture, in the order of the document."""
-        found: list[Picture] = []
+        result: list[Picture] = []
         for block in self.blocks:
             if isinstance(block, Figure):
-                found.append(block.drawing)
+                result.append(block.drawing)
             elif isinstance(block, Table):
-                found += [cell for row in block.rows for cell in row if isinstance(cell, Drawing | Chart)]
-        return found
+                result += [cell for row in block.rows for cell in row if isinstance(cell, Drawing | Chart)]
+        return result

@@ -55,7 +55,7 @@ def scene_drawing(workbook: Workbook) -> Drawing | None:
     Raises:
         WorkbookError: the part of a chart is no XML.
     """
-    return next((_drawn(*found) for found in scenes(workbook)), None)
+    return next((_drawn(*result) for result in scenes(workbook)), None)
 
 
 def scenes(workbook: Workbook) -> Iterator[tuple[list[SceneLine], list[str]]]:
@@ -73,7 +73,7 @@ def scenes(workbook: Workbook) -> Iterator[tuple[list[SceneLine], list[str]]]:
 
 def _line(series: Element) -> SceneLine | None:
     """Return a series of points on the sheet; None if it is on another sheet, is too long, or is not shown."""
-    where = [said.text or "" for said in series.iterfind("./*/{*}numRef/{*}f")]
+    where = [message.text or "" for message in series.iterfind("./*/{*}numRef/{*}f")]
     if len(where) != 2 or not all(map(_SHEET.match, where)):
         return None
     x, y = (_numbers(series.find(f"{{*}}{axis}")) for axis in ("xVal", "yVal"))
@@ -103,21 +103,23 @@ def _line(series: Element) -> SceneLine | None:
 
 def _words(element: Element) -> str:
     """Return the text of a title or of a name; of a reference, the text that the program has stored."""
-    return " ".join(said.text.strip() for tag in ("t", "v") for said in element.iterfind(f".//{{*}}{tag}") if said.text)
+    return " ".join(
+        message.text.strip() for tag in ("t", "v") for message in element.iterfind(f".//{{*}}{tag}") if message.text
+    )
 
 
 def _numbers(axis: Element | None) -> dict[int, float]:
     """Return the stored numbers by their index; texts and blanks are left out."""
-    found = {}
+    result = {}
     for point in () if axis is None else axis.iterfind(".//{*}numCache/{*}pt"):
-        said = point.find("{*}v")
+        message = point.find("{*}v")
         try:
-            index, value = int(point.get("idx", "")), float((said.text if said is not None else None) or "")
+            index, value = int(point.get("idx", "")), float((message.text if message is not None else None) or "")
         except ValueError:
             continue
         if math.isfinite(value) and abs(value) < 1e9:
-            found[index] = value
-    return found
+            result[index] = value
+    return result
 
 
 def _widened(scale: Scale, least: float) -> Scale:
@@ -145,25 +147,25 @@ def _drawn(lines: list[SceneLine], axes: list[str]) -> Drawing:
     right, bottom = _LEFT + wide * (across.high - across.low), _TOP + high * (up.high - up.low)
     x = Scale(across.low, across.high, _LEFT, right, across.step)
     y = Scale(up.low, up.high, bottom, _TOP, up.step)
-    found = []
-    found += [line_to(x(tick), _TOP, x(tick), bottom, GRID) for tick in x.ticks]
-    found += [text_at(x(tick), bottom + 14, text) for tick, text in x.apart]
+    result = []
+    result += [line_to(x(tick), _TOP, x(tick), bottom, GRID) for tick in x.ticks]
+    result += [text_at(x(tick), bottom + 14, text) for tick, text in x.apart]
     for tick, text in y.marks:
-        found += [line_to(_LEFT, y(tick), right, y(tick), GRID)]
-        found.append(text_at(_LEFT - 6, y(tick) + 4, text, anchor="end"))
+        result += [line_to(_LEFT, y(tick), right, y(tick), GRID)]
+        result.append(text_at(_LEFT - 6, y(tick) + 4, text, anchor="end"))
     for number, line in enumerate(lines):
         drawn = [(x(a), y(b)) for a, b in line.points]
         row = _TOP + 8 + 16 * number
         if line.marks:
             places = [*drawn, (right + 25, row)]
-            found += [f'<circle cx="{a:.2f}" cy="{b:.2f}" r="3" fill="{line.colour}"/>' for a, b in places]
+            result += [f'<circle cx="{a:.2f}" cy="{b:.2f}" r="3" fill="{line.colour}"/>' for a, b in places]
         else:
-            found.append(path_of(drawn, line.colour, 1.8, dashed=line.dashed))
-            found.append(line_to(right + 14, row, right + 36, row, line.colour, 1.8, dashed=line.dashed))
-        found.append(text_at(right + 42, row + 4, line.name[:40], anchor="start"))
+            result.append(path_of(drawn, line.colour, 1.8, dashed=line.dashed))
+            result.append(line_to(right + 14, row, right + 36, row, line.colour, 1.8, dashed=line.dashed))
+        result.append(text_at(right + 42, row + 4, line.name[:40], anchor="start"))
     if len(axes) == 2:
-        found.append(text_at((_LEFT + right) / 2, bottom + 30, axes[0]))
-        found.append(text_at(10, (_TOP + bottom) / 2, axes[1], turned=True))
+        result.append(text_at((_LEFT + right) / 2, bottom + 30, axes[0]))
+        result.append(text_at(10, (_TOP + bottom) / 2, axes[1], turned=True))
     height = max(bottom + 38, _TOP + 16 * len(lines) + 10)
-    said = f"The drawing, with {', '.join(line.name for line in lines)}"
-    return drawing(found, right + 220, height, said, 160.0)
+    message = f"The drawing, with {', '.join(line.name for line in lines)}"
+    return drawing(result, right + 220, height, message, 160.0)

@@ -52,8 +52,8 @@ def _from(module: str) -> Callable[[Material], Iterator[Block]]:
     """Return the function `section` of a module of `document.content`, which is loaded when it is called."""
 
     def make(material: Material) -> Iterator[Block]:
-        found = import_module(f"xlmc.outputs.document.content.{module}")
-        return cast("Iterator[Block]", found.section(material))
+        result = import_module(f"xlmc.outputs.document.content.{module}")
+        return cast("Iterator[Block]", result.section(material))
 
     return make
 
@@ -161,8 +161,8 @@ def in_order(output: str, own: Mapping[str, T], further: Mapping[str, T]) -> dic
         own: its forms of its own, by the names that rows have; those that no row names come last.
         further: the sections that it shows as blocks, by their names.
     """
-    found: dict[str, T] = {}
+    result: dict[str, T] = {}
     for name, section in SECTIONS.items():
-        found |= {name: further[name]} if name in further else {}
-        found |= {each: own[each] for each in section.own.get(output, ()) if each in own}
-    return found | {name: form for name, form in own.items() if name not in found}
+        result |= {name: further[name]} if name in further else {}
+        result |= {each: own[each] for each in section.own.get(output, ()) if each in own}
+    return result | {name: form for name, form in own.items() if name not in result}

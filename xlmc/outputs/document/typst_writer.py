@@ -89,8 +89,8 @@ def pictures(drawings: Sequence[Picture]) -> list[bytes]:
         return []
     pages = "\n".join(f"#page[#{_image(each)}]" for each in drawings)
     source = f"#set page(width: auto, height: auto, margin: 0pt, fill: none)\n{pages}\n"
-    found = _compiled(source, format="png", ppi=_RESOLUTION)
-    return [bytes(found)] if isinstance(found, bytes) else [bytes(each) for each in found]
+    value = _compiled(source, format="png", ppi=_RESOLUTION)
+    return [bytes(value)] if isinstance(value, bytes) else [bytes(each) for each in value]
 
 
 def _compiled(source: str, **options: Any) -> Any:
@@ -134,7 +134,7 @@ def _source(document: Document) -> str:
 
 
 def _cover(document: Document) -> Iterator[str]:
-    cells = "".join(f"  strong({_text(label)}), [#{_text(said)}],\n" for label, said in document.cover)
+    cells = "".join(f"  strong({_text(label)}), [#{_text(message)}],\n" for label, message in document.cover)
     yield f"#grid(columns: (5cm, 1fr), row-gutter: .9em,\n{cells})"
 
 

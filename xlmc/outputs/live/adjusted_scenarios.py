@@ -44,27 +44,27 @@ __all__ = ["adjustments_of", "changes_of", "scenario_of"]
 
 def changes_of(definitions: Definitions, adjustments: Adjustments) -> list[Change]:
     """Return what is to be changed in the workbook, without what has no effect, as a number of what is frozen."""
-    found: list[Change] = []
+    result: list[Change] = []
     for assumption in definitions.assumptions:
         if moved := adjustments.assumptions.get(assumption.name):
-            found += _of_assumption(assumption, dict(moved))
+            result += _of_assumption(assumption, dict(moved))
     for name, given in adjustments.filters.items():
         own = definitions.is_used(name)
         used = bool(given.get("used", own))
         numbers = {key: value for key, value in given.items() if key != "used"}
         if used != own:
-            found.append(Switched(name, used))
+            result.append(Switched(name, used))
         if used and numbers and MEASURED.keys() >= numbers.keys():
-            found.append(Measured(name, {key: float(value) for key, value in numbers.items()}))
+            result.append(Measured(name, {key: float(value) for key, value in numbers.items()}))
         elif used and numbers:
-            found.append(Limits(name, numbers_of(numbers)))
+            result.append(Limits(name, numbers_of(numbers)))
     pairs = pairs_of(definitions)
     for name, given in adjustments.correlations.items():
         if name in pairs and "correlation" in given:
-            found.append(Correlated(pairs[name].first, pairs[name].second, float(given["correlation"])))
-    found += [Stated(name, numbers_of(given)) for name, given in adjustments.forecasts.items()]
-    found += _typed(definitions, adjustments)
-    return found
+            result.append(Correlated(pairs[name].first, pairs[name].second, float(given["correlation"])))
+    result += [Stated(name, numbers_of(given)) for name, given in adjustments.forecasts.items()]
+    result += _typed(definitions, adjustments)
+    return result
 
 
 def _typed(definitions: Definitions, adjustments: Adjustments) -> Iterator[Typed]:
@@ -106,7 +106,7 @@ def scenario_of(definitions: Definitions, name: str, adjustments: Adjustments) -
 def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments | None:
     """Return a scenario of the workbook as a state of the window; None if the window has no handle for a change."""
     assumptions = {each.name: each for each in definitions.assumptions}
-    found = Adjustments()
+    adjustments = Adjustments()
     kinds: dict[str, str] = {}
     typed = [_of_handle(definitions, each) for each in scenario.changes if isinstance(each, Typed)]
     for change in (*typed, *(each for each in scenario.changes if not isinstance(each, Typed))):
@@ -114,7 +114,7 @@ def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments 
             handle = _handle_of(definitions, change)
             if handle is None:
                 return None
-            found = found.having(*handle)
+            adjustments = adjustments.having(*handle)
             continue
         values = _values(change, assumptions)
         if values is None:
@@ -128,8 +128,8 @@ def adjustments_of(definitions: Definitions, scenario: Scenario) -> Adjustments 
                 continue  # there is nothing to be taken away
             if key not in own:
                 return None
-            found = found.having(of, name, key, value)
-    return found
+            adjustments = adjustments.having(of, name, key, value)
+    return adjustments
 
 
 def _of_handle(definitions: Definitions, typed: Typed) -> Change:

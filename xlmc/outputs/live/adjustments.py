@@ -121,17 +121,17 @@ class Adjustments:
         """Return what still differs from a workbook that was changed meanwhile: nothing of rows that it no longer has,
         and of values that it now has itself.
         """
-        found = Adjustments()
+        adjustments = Adjustments()
         for of, name, key, value in self.each():
             own = own_values(definitions, of, name, self.kind(of, name))
             if key in own and not is_own(value, own[key]) and is_choice(definitions, of, name, value):
-                found = found.having(of, name, key, value)
-        return found
+                adjustments = adjustments.having(of, name, key, value)
+        return adjustments
 
     def kind(self, of: str, name: str) -> str | None:
         """Return the kind of distribution that an assumption was given; None for the workbook's."""
-        found = self.assumptions.get(name, {}).get("kind") if of == "assumption" else None
-        return found if isinstance(found, str) else None
+        result = self.assumptions.get(name, {}).get("kind") if of == "assumption" else None
+        return result if isinstance(result, str) else None
 
     def in_kind(self, name: str, kind: str | None) -> Adjustments:
         """Return the adjustments with an assumption in another kind, whose numbers suit it; None for its own."""
@@ -140,18 +140,18 @@ class Adjustments:
 
     def frozen_part(self, definitions: Definitions) -> Adjustments:
         """Return the part that says what is held and where, and which rows are used; nothing that has no effect."""
-        found = Adjustments()
+        adjustments = Adjustments()
         for name, (_, used) in definitions.switches.items():
             if self.filters.get(name, {}).get("used", used) != used:
-                found = found.having("filter", name, "used", not used)
+                adjustments = adjustments.having("filter", name, "used", not used)
         for assumption in definitions.assumptions:
             given = self.assumptions.get(assumption.name, {})
             frozen = given.get("frozen", assumption.frozen)
             if frozen != assumption.frozen:
-                found = found.having("assumption", assumption.name, "frozen", frozen)
+                adjustments = adjustments.having("assumption", assumption.name, "frozen", frozen)
             if frozen and "base" in given:
-                found = found.having("assumption", assumption.name, "base", given["base"])
-        return found
+                adjustments = adjustments.having("assumption", assumption.name, "base", given["base"])
+        return adjustments
 
     def typed_part(self) -> Adjustments:
         """Return the part that is typed into cells before anything else is changed."""
@@ -163,23 +163,25 @@ class Adjustments:
 
     def numbers(self, definitions: Definitions) -> Adjustments:
         """Return the rest: numbers of what is drawn, of filters that are used, of forecasts and of correlations."""
-        found = Adjustments(forecasts=self.forecasts, correlations=self.correlations)
+        adjustments = Adjustments(forecasts=self.forecasts, correlations=self.correlations)
         for name, given in self.filters.items():
             if given.get("used", definitions.is_used(name)):
-                found = found._with("filter", name, {key: value for key, value in given.items() if key != "used"})
+                adjustments = adjustments._with(
+                    "filter", name, {key: value for key, value in given.items() if key != "used"}
+                )
         for assumption in definitions.assumptions if self.assumptions else ():
             moved = self.assumptions.get(assumption.name)
             if moved and not moved.get("frozen", assumption.frozen):
                 own = {key: value for key, value in moved.items() if key not in ("frozen", "base")}
-                found = found._with("assumption", assumption.name, own)
-        return found
+                adjustments = adjustments._with("assumption", assumption.name, own)
+        return adjustments
 
     def as_json(self) -> dict[str, Any]:
         """Return plain values, which `of_json` reads back."""
         return {part: {name: dict(each) for name, each in self._part(of).items()} for of, part in PARTS.items()}
 
     @classmethod
-    def of_json(cls, found: Mapping[str, Any]) -> Adjustments:
+    def of_json(cls, result: Mapping[str, Any]) -> Adjustments:
         """Read what `as_json` returned.
 
         Raises:
@@ -187,15 +189,15 @@ class Adjustments:
         """
         made = cls()
         for of, part in PARTS.items():
-            rows = found[part] if of in ("assumption", "filter") else found.get(part, {})  # new in 0.12.0
+            rows = result[part] if of in ("assumption", "filter") else result.get(part, {})  # new in 0.12.0
             for name, each in rows.items():
                 for key, value in each.items():
                     made = made.having(of, str(name), str(key), _amount(str(key), value))
         return made
 
     def _part(self, of: str) -> Changed:
-        found: Changed = getattr(self, PARTS[of])
-        return found
+        result: Changed = getattr(self, PARTS[of])
+        return result
 
     def _with(self, of: str, name: str, own: Mapping[str, Amount]) -> Adjustments:
         part = {other: each for other, each in self._part(of).items() if other != name}

@@ -29,7 +29,7 @@ _HEADINGS_OF_KINDS: Final = {spec.key: spec.heading for kind in KINDS for spec i
 
 def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
     """Say what differs, a phrase each: `friction: High 0.75 → 0.85`; also of what the workbook no longer has."""
-    found = []
+    result = []
     for of, name, key, value in adjustments.each():
         own = own_values(definitions, of, name, adjustments.kind(of, name))
         if key in own:
@@ -37,8 +37,8 @@ def in_words(definitions: Definitions, adjustments: Adjustments) -> list[str]:
         else:
             number = _amount_text(key, value)
             label = f"{LIMITS.get(key, key.replace('_', ' '))} {number} (no longer in the workbook)"
-        found.append(f"{name}: {label}")
-    return found
+        result.append(f"{name}: {label}")
+    return result
 
 
 def changed_text(

@@ -76,12 +76,12 @@ class Comparison:
             if scenario.name not in self._runs:
                 self._runs[scenario.name] = self._run(scenario, self._base, watch)
         runs = {each.name: self._runs[each.name] for each in self._scenarios}
-        found = [answers_of(self._base, None, self._base)]
+        answers = [answers_of(self._base, None, self._base)]
         for scenario in self._scenarios:
             go_on()
             if not isinstance(run := runs[scenario.name], str):
-                found.append(answers_of(run, scenario, self._base))
-        return scenarios_html(found, {name: why for name, why in runs.items() if isinstance(why, str)})
+                answers.append(answers_of(run, scenario, self._base))
+        return scenarios_html(answers, {name: why for name, why in runs.items() if isinstance(why, str)})
 
     def _run(self, scenario: Scenario, base: RunResult, watch: Callable[[Progress], None]) -> RunResult | str:
         """Run a scenario; returns why it is not possible where it is not."""

@@ -132,8 +132,8 @@ def frame_of(
 
 def bases_of(simulation: RunResult) -> Bases | None:
     """Return the base case of a run."""
-    found = base_case(simulation)
-    return None if found is None else found.forecasts
+    result = base_case(simulation)
+    return None if result is None else result.forecasts
 
 
 def _figure(result: ForecastResult, base: float | None) -> Figure | None:
@@ -208,12 +208,12 @@ def _numbers(result: ForecastResult) -> list[tuple[str, Estimate]]:
     """Return the numbers that a reader of the chart asks for first."""
     if result not in _KNOWN:
         sample = result.sample
-        found = percentiles(sample, _PERCENTS)
+        results = percentiles(sample, _PERCENTS)
         _KNOWN[result] = [
             ("Mean", result.mean),
             (_SPREAD, result.standard_deviation),
             ("Minimum", minimum(sample)),
-            *((f"{number_text(percent)} %", found[percent]) for percent in _PERCENTS),
+            *((f"{number_text(percent)} %", results[percent]) for percent in _PERCENTS),
             ("Maximum", maximum(sample)),
         ]
     return _KNOWN[result]
@@ -309,10 +309,10 @@ def matters_html(simulation: RunResult, names: Collection[str], report_share: Ca
     chosen = [name for name in simulation.results if name in names]
     if not chosen:
         return _of_chosen(simulation, chosen).source
-    found = sensitivities(simulation, chosen, progress=lambda share: report_share(_MEASURING * share))
-    parts = [_of_chosen(simulation, chosen), dependence(found, simulation.model.workbook)]
+    result = sensitivities(simulation, chosen, progress=lambda share: report_share(_MEASURING * share))
+    parts = [_of_chosen(simulation, chosen), dependence(result, simulation.model.workbook)]
     report_share(0.5 + _MEASURING / 2.0)
-    return join([*parts, limits(found)]).source
+    return join([*parts, limits(result)]).source
 
 
 def _of_chosen(simulation: RunResult, names: Sequence[str]) -> Html:
@@ -340,14 +340,14 @@ def tables_html(simulation: RunResult, names: Collection[str], report_share: Cal
     return join(parts).source
 
 
-def scenarios_html(found: Sequence[ScenarioAnswers], impossible: Mapping[str, str]) -> str:
+def scenarios_html(answers: Sequence[ScenarioAnswers], impossible: Mapping[str, str]) -> str:
     """Write the answers of scenarios beside those of the workbook itself, in tables.
 
     Args:
-        found: the workbook itself, then scenarios.
+        answers: the workbook itself, then scenarios.
         impossible: why there are no answers of a scenario, by its name.
     """
-    blocks = blocks_html(scenario_blocks(found, impossible))
+    blocks = blocks_html(scenario_blocks(answers, impossible))
     return element("section", element("h2", "Scenarios"), blocks).source
 
 
@@ -420,7 +420,7 @@ def matrix_of(simulation: RunResult, names: Collection[str]) -> dict[str, Any] |
         "names": shown,
         "left": len(chosen),
         "limits": [bound for bound, _ in bounds],
-        "said": [said for _, said in bounds],
+        "said": [message for _, message in bounds],
         "points": [[finite(float(value)) for value in columns[name][:_MATRIX_POINTS]] for name in shown],
         "cells": cells,
         "looked": min(_RANKED, simulation.accepted),
@@ -482,5 +482,5 @@ def _form(simulation: RunResult, name: str) -> Form:
 
 def _units(simulation: RunResult, name: str) -> str:
     model = simulation.model
-    found = {each.name: each.units for each in model.assumptions} | {each.name: each.units for each in model.forecasts}
-    return found.get(name, "")
+    result = {each.name: each.units for each in model.assumptions} | {each.name: each.units for each in model.forecasts}
+    return result.get(name, "")

@@ -79,8 +79,8 @@ class History:
     ) -> Moment | None:
         self._dragged = None
         while there:
-            found = fitting(there.pop())
-            if found != now:
+            moment = fitting(there.pop())
+            if moment != now:
                 back.append(now)
-                return found
+                return moment
         return None

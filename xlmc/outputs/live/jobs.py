@@ -216,8 +216,8 @@ class StateRun:
                 model = self.models.at_rest(self.adjustments)
                 begun = clock()
                 options = replace(self.asked, in_memory=self.in_memory)
-                found = run_model(model, options, progress=watched, pieces=self.piece, follow=())
-                base = bases_of(found)
+                run = run_model(model, options, progress=watched, pieces=self.piece, follow=())
+                base = bases_of(run)
             else:
                 moving = self.models.moving(self.adjustments)
                 model, base = moving.model, moving.base
@@ -235,29 +235,29 @@ class StateRun:
                     keep_prior=False,
                     in_memory=self.in_memory,
                 )
-                found = run_model(
+                run = run_model(
                     model,
                     options,
                     own_runner=None if self.method == "weights" else runner,  # it computes other filters
                     progress=watched,
                     follow=(),
                 )
-            seconds = (clock() - begun) / max(found.evaluated, 1)
-            messages = self._messages(found, model, base)
+            seconds = (clock() - begun) / max(run.evaluated, 1)
+            messages = self._messages(run, model, base)
         except XlmcError as error:
             return Outcome(problem=str(error))
-        return Outcome(tuple(messages), found, seconds)
+        return Outcome(tuple(messages), run, seconds)
 
-    def _messages(self, found: RunResult, model: CompiledModel, base: Bases | None) -> list[Message]:
+    def _messages(self, run: RunResult, model: CompiledModel, base: Bases | None) -> list[Message]:
         """Return what is shown of a run."""
         resting, view = self.stage == "rest", self.view
-        frame = frame_of(found, self.behind, view.forecasts, base, moving=not resting, fits=resting and view.fits)
+        frame = frame_of(run, self.behind, view.forecasts, base, moving=not resting, fits=resting and view.fits)
         messages = [_frame("rest" if resting else "moving", self.version, self.seq, frame)]
         messages[0]["shapes"] = shapes_of(model, self._reshaped(model), self.shapes)
         if resting:
-            return [*messages, {"kind": "rest", "version": self.version, **rest_of(found)}]
+            return [*messages, {"kind": "rest", "version": self.version, **rest_of(run)}]
         pairs = (replace(tab, chosen=()) for tab in view.tabs if tab.key == "pairs")  # whose matrix takes its time
-        return [*messages, *(_part(found, self.version, tab, lambda share: None) for tab in pairs)]
+        return [*messages, *(_part(run, self.version, tab, lambda share: None) for tab in pairs)]
 
     def _reshaped(self, model: CompiledModel) -> list[str]:
         """Return the assumptions whose distribution may differ from the workbook's."""

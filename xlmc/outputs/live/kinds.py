@@ -41,8 +41,8 @@ def in_kind(assumption: Assumption, kind: str) -> Assumption:
     """Return an assumption of the workbook in another kind; itself in its own, or where it cannot be given another."""
     if kind == assumption.distribution or kind not in kinds_of(assumption):
         return assumption
-    found = distribution_in_kind(assumption, kind)
-    return replace(assumption, distribution=kind, given=found.given, checked=None, stated={})
+    distribution = distribution_in_kind(assumption, kind)
+    return replace(assumption, distribution=kind, given=distribution.given, checked=None, stated={})
 
 
 def distribution_in_kind(assumption: Assumption, kind: str) -> Distribution:

@@ -75,32 +75,32 @@ class Library:
 
     def path(self, key: str) -> Path | None:
         """Return the workbook of a key; None if there is none, or if it may not be opened any more."""
-        found = self._paths.get(key)
-        if found is None or not self._is_inside(found):
+        result = self._paths.get(key)
+        if result is None or not self._is_inside(result):
             return None
-        return found
+        return result
 
     def books(self) -> list[dict[str, str]]:
         """Return the workbooks in the folder: name and key."""
         if self.folder is None:
             return []
         try:
-            found = sorted(each for each in self.folder.iterdir() if _is_book(each) and self._is_inside(each))
+            paths = sorted(each for each in self.folder.iterdir() if _is_book(each) and self._is_inside(each))
         except OSError as error:
             self.trouble = f"{self.folder}: {error.strerror or error}."
             return []
-        return [{"name": printable(each.name), "key": self._add(each)} for each in found[:_MOST_LISTED]]
+        return [{"name": printable(each.name), "key": self._add(each)} for each in paths[:_MOST_LISTED]]
 
     def recent(self) -> list[dict[str, str]]:
         """Return the workbooks that were opened before: name, folder and key."""
         try:
-            found = self.keeper.recent()
+            paths = self.keeper.recent()
         except XlmcError as error:
             self.trouble = str(error)
             return []
         return [
             {"name": printable(each.name), "folder": printable(str(each.parent)), "key": self._add(each)}
-            for each in found
+            for each in paths
         ]
 
     def templates(self) -> list[dict[str, Any]]:

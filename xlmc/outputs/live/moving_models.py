@@ -141,13 +141,13 @@ class KnownModels:
             SimulationError: a filter or a forecast cannot be computed.
         """
         if typed := adjustments.typed_part():
-            found = self._decided(adjustments) if self._decides else None
-            return found or self._alone(self._with_typed(typed)).moving(adjustments.untyped_part())
+            result = self._decided(adjustments) if self._decides else None
+            return result or self._alone(self._with_typed(typed)).moving(adjustments.untyped_part())
         self._typed = None
         self._alone(self)
         state = _state_of(self.own.definitions, adjustments)
-        if (found := self._held(adjustments, state)) is not None:
-            return found
+        if (result := self._held(adjustments, state)) is not None:
+            return result
         model = self.at_rest(adjustments)
         reusing = self._runner_of(state, self._holding.get(state, model))
         return Moving(model, reusing if reusing.holds_for(model) else self._new_runner(model))
@@ -252,11 +252,11 @@ def _deciding(own: CompiledModel) -> CompiledModel | None:
     )
     with_decisions = replace(definitions, assumptions=(*definitions.assumptions, *decided), decisions=())
     try:
-        found = type(own)(own.workbook, with_decisions, own.path)
+        model = type(own)(own.workbook, with_decisions, own.path)
     except XlmcError:  # a formula that computes which cell it reads, say
         return None
-    same = len(found.needed.stages) == len(own.needed.stages)
-    return found if same and _in_each_trial(found) <= _MOST_MORE * _in_each_trial(own) else None
+    same = len(model.needed.stages) == len(own.needed.stages)
+    return model if same and _in_each_trial(model) <= _MOST_MORE * _in_each_trial(own) else None
 
 
 def _in_each_trial(model: CompiledModel) -> int:
@@ -280,7 +280,7 @@ def _shapes(graph: Graph) -> int:
 
 def _state_of(definitions: Definitions, adjustments: Adjustments) -> _State:
     state = adjustments.frozen_part(definitions)
-    found: list[tuple[str, bool, float | None]] = [
+    result: list[tuple[str, bool, float | None]] = [
         (name, bool(each["used"]), None) for name, each in state.filters.items()
     ]
     changed = state.assumptions
@@ -289,15 +289,15 @@ def _state_of(definitions: Definitions, adjustments: Adjustments) -> _State:
         if given is not None:
             base = given.get("base")
             frozen = bool(given.get("frozen", assumption.frozen))
-            found.append((assumption.name, frozen, None if base is None else float(base)))
-    return tuple(found)
+            result.append((assumption.name, frozen, None if base is None else float(base)))
+    return tuple(result)
 
 
 def _frozen_values(own: CompiledModel, state: _State) -> dict[str, float] | None:
     """Return the value of each held assumption; None if holding it changes more than the values of draws."""
     named = {each.name: each for each in own.live}
     grouped = {name for group in own.groups for name in group.names}
-    found: dict[str, float] = {}
+    result: dict[str, float] = {}
     for name, frozen, base in state:
         assumption = named.get(name)
         value = base if base is not None or assumption is None else assumption.base
@@ -305,15 +305,15 @@ def _frozen_values(own: CompiledModel, state: _State) -> dict[str, float] | None
             return None
         if own.draws[name].name in grouped:
             return None
-        found[name] = value
+        result[name] = value
     frozen_then = replace(
         own.definitions,
         assumptions=tuple(
-            replace(each, frozen=True, base=found[each.name]) if each.name in found else each
+            replace(each, frozen=True, base=result[each.name]) if each.name in result else each
             for each in own.definitions.assumptions
         ),
     )
-    return None if found and own.reads_elsewhere(changed_cells(own, frozen_then)[0]) else found
+    return None if result and own.reads_elsewhere(changed_cells(own, frozen_then)[0]) else result
 
 
 def _holding_still(definitions: Definitions, values: Mapping[str, float]) -> Definitions:

@@ -441,7 +441,7 @@ def _leave_to_itself() -> None:
 def _stamp(path: Path) -> tuple[int, ...] | None:
     """Return what differs once a file was saved."""
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return found.st_mtime_ns, found.st_ino, found.st_size
+    return status.st_mtime_ns, status.st_ino, status.st_size

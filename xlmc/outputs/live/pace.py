@@ -41,9 +41,9 @@ class Pace:
 
     def of_saved(self, formulas: int) -> Pace:
         """Return what is expected of the workbook once it was saved, with so many formulas now."""
-        found, factor = Pace(formulas), max(formulas, 1) / max(self._formulas, 1)
-        found._seconds = {resting: factor * seconds for resting, seconds in self._seconds.items()}
-        return found
+        pace, factor = Pace(formulas), max(formulas, 1) / max(self._formulas, 1)
+        pace._seconds = {resting: factor * seconds for resting, seconds in self._seconds.items()}
+        return pace
 
     def learn(self, seconds: float, *, resting: bool, quick: bool) -> None:
         """Take how long a run took for a trial; a quick one, which says little, where nothing else is known."""

@@ -214,17 +214,17 @@ def read_message(text: str | bytes) -> PageMessage:
     if len(text) > MOST_BYTES:
         raise ProtocolError(f"a message of {count_text(len(text))} characters is too long")
     try:
-        found = json.loads(text)
+        value = json.loads(text)
     except (ValueError, RecursionError) as error:
         raise ProtocolError("a message is not JSON") from error
-    kind = found.get("kind") if isinstance(found, dict) else None
+    kind = value.get("kind") if isinstance(value, dict) else None
     wanted = _FIELDS.get(kind) if isinstance(kind, str) else None
     if wanted is None:
         raise ProtocolError("a message has no kind that is known")
     for name, fits in wanted.items():
-        if name not in found or not fits(found[name]):
+        if name not in value or not fits(value[name]):
             raise ProtocolError(f"{name!r} of a message {kind!r} is not what it must be")
-    return PageMessage(str(kind), {name: found[name] for name in wanted})
+    return PageMessage(str(kind), {name: value[name] for name in wanted})
 
 
 def written(message: Message) -> str:

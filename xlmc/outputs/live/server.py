@@ -274,13 +274,13 @@ class LiveServer:
         await self._admit(window, speak)
 
     def _books(self) -> Message:
-        found = {
+        result = {
             "books": self._library.books(),
             "recent": self._library.recent(),
             "templates": self._library.templates(),
         }
         folder = str(self._library.folder or "")
-        return {"kind": "books", "folder": folder, **found, "trouble": self._library.trouble}
+        return {"kind": "books", "folder": folder, **result, "trouble": self._library.trouble}
 
     async def _copied(self, key: str) -> Message:
         """Copy a template into the folder, to be opened."""
@@ -439,8 +439,8 @@ _TYPES: Final = {".js": "text/javascript", ".css": "text/css"}
 
 async def _asset(request: Request) -> Response:
     """Hand out a script or a style, which are the same for everybody and hold nothing of a workbook."""
-    found = _ASSETS.get(request.path_params["name"])
-    if found is None:
+    pair = _ASSETS.get(request.path_params["name"])
+    if pair is None:
         return _refusal("There is no such file.", 404)
-    package, name = found
+    package, name = pair
     return Response(files(package).joinpath(name).read_bytes(), media_type=_TYPES[Path(name).suffix])

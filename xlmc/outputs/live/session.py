@@ -252,10 +252,10 @@ class Session:
                 self._stop()
                 return False
             case "restore":
-                found, self.offered = self.offered, Adjustments()
+                adjustments, self.offered = self.offered, Adjustments()
                 if sent["take"]:
                     self._dragged = False
-                    self._change(found.only(self.own.definitions))
+                    self._change(adjustments.only(self.own.definitions))
             case "keep":
                 self._keep(sent["name"].strip())
             case "show":
@@ -318,9 +318,9 @@ class Session:
             return replace(each, adjustments=adjustments, asked=self._fitting(each.asked))
 
         go = self._history.undo if where == "undo" else self._history.redo
-        found = go(self._moment, fitting)
-        if found is not None:
-            self._go_to(found)
+        moment = go(self._moment, fitting)
+        if moment is not None:
+            self._go_to(moment)
         return Replies(all=[self._state()])
 
     def _go_to(self, moment: Moment) -> None:
@@ -358,16 +358,16 @@ class Session:
             fits = fits and (key == "kind") == (value in KINDS) and is_choice(self.own.definitions, of, name, value)
             if key not in own or not (fits or value is None):
                 raise XlmcError(f"the workbook has no {of} {name!r} with {key!r} to be set")
-        found = self.adjustments
+        adjustments = self.adjustments
         if "kind" in values:
             kind, values = values["kind"], {}
-            found = found.in_kind(name, None if kind == own["kind"] or kind is None else str(kind))
+            adjustments = adjustments.in_kind(name, None if kind == own["kind"] or kind is None else str(kind))
         for key, value in values.items():
-            found = found.having(of, name, key, None if value is None or is_own(value, own[key]) else value)
+            adjustments = adjustments.having(of, name, key, None if value is None or is_own(value, own[key]) else value)
         if of == "filter":
-            _refuse_without_limit(found, name, own)
+            _refuse_without_limit(adjustments, name, own)
         self._seq = seq
-        self._change(found)
+        self._change(adjustments)
 
     def _change(self, adjustments: Adjustments) -> None:
         self.adjustments = adjustments
@@ -382,11 +382,11 @@ class Session:
         self.shown = name
 
     def _show(self, name: str) -> None:
-        found = self._known(name) if name else Adjustments()
-        if found is None:
+        adjustments = self._known(name) if name else Adjustments()
+        if adjustments is None:
             raise XlmcError(f"there is no scenario {name!r} that can be shown")
         self._dragged = False
-        self._change(found)
+        self._change(adjustments)
         self.shown = name
 
     def adopt(self, stored: Mapping[str, Adjustments]) -> None:
@@ -414,8 +414,8 @@ class Session:
         self.behind_is = "the workbook before it was saved"
         text = f"{model.workbook.name} was saved: {'; '.join(news) or 'nothing that a run depends on changed'}"
         with in_style(model.definitions.settings.number_style):
-            told = [book_message(model), self._state()]
-        return [*told, {"kind": "news", "text": text, "link": ""}, *self._trouble()]
+            messages = [book_message(model), self._state()]
+        return [*messages, {"kind": "news", "text": text, "link": ""}, *self._trouble()]
 
     def at_rest(self) -> AtRest:
         """Return the state that is shown, with its run.
@@ -586,7 +586,7 @@ class Session:
         self._done |= job.done
         if outcome.seconds is not None:
             self._pace.learn(outcome.seconds, resting=job.stage == "rest", quick=job.stage == "quick")
-        found = list(outcome.messages)
+        result = list(outcome.messages)
         if job.stage != "quick" and job.version == self.version:
             self._answered = self._drawn
         self._moving = outcome.simulation if job.stage == "moving" and job.version == self.version else None
@@ -596,8 +596,8 @@ class Session:
                 self._sketch_seconds = 0.0
             if self._pin_next and not self.adjustments and outcome.simulation is not None:
                 self.behind, self._behind_of, self._pin_next = outcome.simulation, self._now, False
-        self._remember(found)
-        return [*over, *found]
+        self._remember(result)
+        return [*over, *result]
 
     def _finish_shown(self, job: Job, outcome: Outcome) -> list[Message]:
         """Take what a job found that shows more of a run; one that failed is not tried again for the same."""
@@ -650,13 +650,13 @@ def _sketched(view: View) -> Tab | None:
     return next((tab for tab in view.tabs if tab.key == SKETCHED), None)
 
 
-def _refuse_without_limit(found: Adjustments, name: str, own: Mapping[str, object]) -> None:
+def _refuse_without_limit(adjustments: Adjustments, name: str, own: Mapping[str, object]) -> None:
     """Refuse to take the last limit of a filter away: its cell would have to be TRUE then.
 
     Raises:
         XlmcError: none is left.
     """
-    limits, given = LIMITS.keys() & own.keys(), found.filters.get(name, {})
+    limits, given = LIMITS.keys() & own.keys(), adjustments.filters.get(name, {})
     if limits and all(given.get(key) == NONE for key in limits):
         raise XlmcError(f"{name!r} would have no limit", hint="Switch Use off to leave the filter out")
 

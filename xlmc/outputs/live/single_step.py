@@ -144,14 +144,14 @@ def step_html(run: RunResult, trial: int) -> str:
     asked = [(each.name, str(each.cell), limits_text(each), text[each.cell], word) for each, word in words]
     answers = [(each.name, str(each.cell), text[each.cell], each.units) for each in model.forecasts]
     formulas = [(str(cell), model.needed.graph.text(cell), text[cell]) for cell in step.formulas]
-    said = f"{count_text(step.left)} more formulas are not shown." if step.left else ""
+    message = f"{count_text(step.left)} more formulas are not shown." if step.left else ""
     blocks: list[Block] = [
         Paragraph(_verdict(run, trial, step, holds)),
         Table("", ("Drawn", "Cell", "Value", "Units"), tuple(drawn), right=(2,), caption="Assumptions"),
         *([_filters_table(asked)] if asked else []),
         Table("", ("Forecast", "Cell", "Value", "Units"), tuple(answers), right=(2,), caption="Forecasts"),
         Table("", ("Cell", "Formula", "Value"), tuple(formulas), right=(2,), caption="Formulas"),
-        *([Paragraph(said, "small")] if said else []),
+        *([Paragraph(message, "small")] if message else []),
     ]
     return blocks_html(blocks).source
 

@@ -82,12 +82,12 @@ class Keeper:
         return named, unkept
 
     def _scenarios(self, path: Path) -> tuple[dict[str, Adjustments], Adjustments]:
-        found = self._read(path)
+        result = self._read(path)
         try:
-            if found is None:
+            if result is None:
                 return {}, Adjustments()
-            named = {str(name): Adjustments.of_json(each) for name, each in found["scenarios"].items()}
-            return named, Adjustments.of_json(found["unkept"])
+            named = {str(name): Adjustments.of_json(each) for name, each in result["scenarios"].items()}
+            return named, Adjustments.of_json(result["unkept"])
         except (ValueError, TypeError, AttributeError, KeyError, OverflowError) as error:
             raise _set_aside(path) from error
 
@@ -119,8 +119,8 @@ class Keeper:
             WorkbookError: the list cannot be read; it is set aside.
         """
         path = self._folder / "recent.json"
-        found = self._read(path)
-        books = found.get("books", []) if found else []
+        result = self._read(path)
+        books = result.get("books", []) if result else []
         if not isinstance(books, list):
             raise _set_aside(path)
         return [Path(each) for each in books if isinstance(each, str) and _is_file(each)]
@@ -161,15 +161,15 @@ class Keeper:
                 hint="Look at its rights",
             ) from error
         try:
-            found = json.loads(text)
+            value = json.loads(text)
         except (ValueError, RecursionError) as error:
             raise _set_aside(path) from error
-        if not isinstance(found, dict):
+        if not isinstance(value, dict):
             raise _set_aside(path)
-        return found
+        return value
 
-    def _write(self, path: Path, found: Mapping[str, Any]) -> None:
-        text = json.dumps(found, indent=1)
+    def _write(self, path: Path, result: Mapping[str, Any]) -> None:
+        text = json.dumps(result, indent=1)
         if len(text) > _MOST_BYTES:
             raise OSError(errno.EFBIG, "there are too many")
         unfinished = path.with_suffix(f".{os.getpid()}-{time.monotonic_ns()}.tmp")
@@ -204,17 +204,17 @@ def _merged(
     seen: Mapping[str, Adjustments], ours: Mapping[str, Adjustments], theirs: Mapping[str, Adjustments]
 ) -> dict[str, Adjustments]:
     """Merge what two windows keep, each of which began with what was seen last; one name with two contents is two."""
-    found = {name: each for name, each in theirs.items() if name in ours or name not in seen}
+    result = {name: each for name, each in theirs.items() if name in ours or name not in seen}
     for name, each in ours.items():
         changed_here, changed_there = seen.get(name) != each, theirs.get(name) != seen.get(name)
         if not changed_here and name in seen and name not in theirs:
             continue  # forgotten in the other window
         if changed_here and changed_there and name in theirs and theirs[name] != each:
             free = (f"{name} ({number})" for number in count(2))
-            found[next(other for other in free if other not in ours and other not in theirs)] = theirs[name]
+            result[next(other for other in free if other not in ours and other not in theirs)] = theirs[name]
         if changed_here or name not in theirs:
-            found[name] = each
-    return found
+            result[name] = each
+    return result
 
 
 def _is_file(path: str) -> bool:

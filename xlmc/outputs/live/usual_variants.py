@@ -17,7 +17,7 @@ def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
 
     Ranges are those of the assumptions with numbers `low` and `high`; a limit of 0 stays.
     """
-    found: dict[str, Adjustments] = {}
+    result: dict[str, Adjustments] = {}
     for label, factor in (("half as wide", 0.5), ("one and a half times as wide", 1.5)):
         made = Adjustments()
         for name, low, high in _ranges(definitions):
@@ -25,15 +25,15 @@ def usual_variants(definitions: Definitions) -> dict[str, Adjustments]:
             for key, end in (("low", middle - half), ("high", middle + half)):
                 made = made.having("assumption", name, key, float(f"{end:.12g}"))  # 0.6875, not 0.6874999999999999
         if made:
-            found[f"every range {label}"] = made
+            result[f"every range {label}"] = made
     for filter_ in definitions.filters:
         for key, limit in movable_limits(filter_).items():
             if isinstance(limit, Cell) or not limit:
                 continue
             for label, factor in (("half", 0.5), ("twice", 2.0)):
                 name = f"{filter_.name} {LIMITS[key]} {plain_text(limit * factor)} ({label})"
-                found[name] = Adjustments().having("filter", filter_.name, key, limit * factor)
-    return found
+                result[name] = Adjustments().having("filter", filter_.name, key, limit * factor)
+    return result
 
 
 def _ranges(definitions: Definitions) -> Iterator[tuple[str, float, float]]:

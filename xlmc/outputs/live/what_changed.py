@@ -24,7 +24,7 @@ Row = TypeVar("Row", bound="_HasName")
 
 def what_changed(before: CompiledModel, after: CompiledModel) -> list[str]:
     """Return phrases, those on assumptions first; none if nothing that a run depends on has changed."""
-    found = [
+    result = [
         *_rows("assumption", _named(before.assumptions), _named(after.assumptions), _assumption),
         *_rows("filter", _filters(before), _filters(after), _filter),
         *_rows("forecast", _named(before.forecasts), _named(after.forecasts), _forecast),
@@ -34,7 +34,7 @@ def what_changed(before: CompiledModel, after: CompiledModel) -> list[str]:
         *_correlations(before, after),
         *_settings(before, after),
     ]
-    return [*found, *_cells(before, after)]
+    return [*result, *_cells(before, after)]
 
 
 class _HasName(Protocol):

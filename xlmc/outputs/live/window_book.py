@@ -451,5 +451,5 @@ def known_scenario(definitions: Definitions, stored: Mapping[str, Adjustments], 
     """Return a scenario by name; None if there is none that can be shown."""
     if name in stored:
         return stored[name].only(definitions)
-    found = next((each for each in definitions.scenarios if each.name == name), None)
-    return None if found is None else adjustments_of(definitions, found)
+    scenario = next((each for each in definitions.scenarios if each.name == name), None)
+    return None if scenario is None else adjustments_of(definitions, scenario)

@@ -232,8 +232,8 @@ def _small(
 
 def _small_line(axis: Axes, study: Study, curve: Curve, get: Callable[[Runs], tuple[float, float, float]]) -> bool:
     style = STYLES.get(curve.method.key, OTHER)
-    found = [(float(runs.budget), *get(runs)) for runs in curve.lengths]
-    known = [each for each in found if np.isfinite(each[1]) and each[1] > 0.0]
+    result = [(float(runs.budget), *get(runs)) for runs in curve.lengths]
+    known = [each for each in result if np.isfinite(each[1]) and each[1] > 0.0]
     if not known:
         return False
     if curve in study.once:

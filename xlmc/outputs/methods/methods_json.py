@@ -13,15 +13,15 @@ from xlmc.outputs.methods.methods_tables import cannot, floor_of
 __all__ = ["study_json"]
 
 
-def study_json(found: Study) -> dict[str, Any]:
+def study_json(study: Study) -> dict[str, Any]:
     """Everything that was measured, as JSON holds it."""
-    reference = found.reference
-    best = choice(found) if found.varying else None
+    reference = study.reference
+    best = choice(study) if study.varying else None
     chosen = best and best.chosen
     return {
-        "workbook": found.model.workbook.name,
-        "accuracy": found.accuracy[0],
-        "seed": found.seed,
+        "workbook": study.model.workbook.name,
+        "accuracy": study.accuracy[0],
+        "seed": study.seed,
         "reference": {
             "trials": reference.trials,
             "accepted": reference.accepted,
@@ -40,40 +40,40 @@ def study_json(found: Study) -> dict[str, Any]:
                 for name, answer in reference.answers.items()
             },
             "widths": {name: finite(width) for name, width in reference.widths.items()},
-            "own_errors_of_widths": {each: finite(floor_of(found, each)) for each in STATISTICS},
+            "own_errors_of_widths": {each: finite(floor_of(study, each)) for each in STATISTICS},
             "independent_trials": {
-                "trials": found.ladder[-1],
+                "trials": study.ladder[-1],
                 "errors": {
-                    name: {each: finite(reference.theory(name, each, found.ladder[-1])) for each in STATISTICS}
+                    name: {each: finite(reference.theory(name, each, study.ladder[-1])) for each in STATISTICS}
                     for name in reference.answers
                 },
             },
         },
         "recommended": chosen and chosen.method.key,
         "cheapest": [curve.method.key for curve in best.cheapest] if best else [],
-        "methods": [_curve(found, curve) for curve in found.every],
-        "not_used": dict(found.absent),
-        "ended_early": found.ended or None,
-        "recommendation": recommendation(found),
+        "methods": [_curve(study, curve) for curve in study.every],
+        "not_used": dict(study.absent),
+        "ended_early": study.ended or None,
+        "recommendation": recommendation(study),
     }
 
 
-def _curve(found: Study, curve: Curve) -> dict[str, Any]:
+def _curve(study: Study, curve: Curve) -> dict[str, Any]:
 
-    drawn = curve not in found.once
-    wanted = need(found, curve) if drawn and found.varying else None
-    near = worst_error(found, curve) if curve.answers and found.varying and not drawn else None
+    drawn = curve not in study.once
+    wanted = need(study, curve) if drawn and study.varying else None
+    near = worst_error(study, curve) if curve.answers and study.varying and not drawn else None
     return {
         "method": curve.method.key,
         "name": curve.method.name,
-        "cannot": cannot(found, curve.method),
+        "cannot": cannot(study, curve.method),
         "remarks": list(curve.remarks),
         "setup_seconds": curve.setup,
         "bounds": {name: {"least": least, "most": most} for name, (least, most) in curve.ranges.items()},
         "bounds_at": [
             {"forecast": name, "end": end, "assumptions": dict(point)} for (name, end), point in curve.ends.items()
         ],
-        "runs": [_of_length(found, runs, drawn) for runs in curve.lengths],
+        "runs": [_of_length(study, runs, drawn) for runs in curve.lengths],
         "slopes": {
             each: {"trials": finite(curve.slope(each, "budget")), "seconds": finite(curve.slope(each, "seconds"))}
             for each in STATISTICS
@@ -84,7 +84,7 @@ def _curve(found: Study, curve: Curve) -> dict[str, Any]:
     }
 
 
-def _of_length(found: Study, runs: Runs, drawn: bool) -> dict[str, Any]:
+def _of_length(study: Study, runs: Runs, drawn: bool) -> dict[str, Any]:
 
     return {
         "trials": runs.budget if drawn else None,
@@ -105,7 +105,7 @@ def _of_length(found: Study, runs: Runs, drawn: bool) -> dict[str, Any]:
                 }
                 for each in STATISTICS
             }
-            for forecast in found.model.forecasts
+            for forecast in study.model.forecasts
         },
     }
 

@@ -30,17 +30,17 @@ def methods_report(study: Study, *, figures: bool) -> StudyReport:
     first = _filled([methods_tables.error_table(study)])
     rest = _filled([methods_tables.bounds_table(study), methods_tables.reference_table(study)])
     long = _filled([methods_tables.forecast_table(study), methods_tables.length_table(study)])
-    said = blocks_of(each.replace("`", "") for each in recommendation(study))
+    messages = blocks_of(each.replace("`", "") for each in recommendation(study))
     words = _lines(_CANNOT, "Method", methods_tables.cannot_lines(study))
     ends = _lines(_ENDS, "Bound", methods_tables.ends_lines(study))
     drawn = _figures(study) if figures else []
     return StudyReport(
         "Methods of uncertainty analysis",
         study.model.workbook.name,
-        (*said, *drawn, *first, *words, *rest, *long, *ends),
+        (*messages, *drawn, *first, *words, *rest, *long, *ends),
         "Methods",
         partial(study_json, study),
-        on_sheet=(*said, *first, *rest, *words, *ends),
+        on_sheet=(*messages, *first, *rest, *words, *ends),
         add_sheets=partial(add_sheets, study),
         drawn=partial(png, study),
     )
@@ -53,17 +53,17 @@ def in_short(study: Study) -> list[Block]:
         methods_tables.error_table(study),
         methods_tables.bounds_table(study),
     )
-    words = [Paragraph(f"{name}: {said}.") for name, said in methods_tables.cannot_lines(study)]
+    words = [Paragraph(f"{name}: {message}.") for name, message in methods_tables.cannot_lines(study)]
     return [*_filled(tables), *words]
 
 
 def _figures(study: Study) -> list[Block]:
-    found: list[Block] = [Heading("Speed against accuracy")]
-    found += [Paragraph(each, "small") for each in (HOW_TO_READ if study.varying else ())]
+    result: list[Block] = [Heading("Speed against accuracy")]
+    result += [Paragraph(each, "small") for each in (HOW_TO_READ if study.varying else ())]
     for work, what in _WORKS:
         drawn = Drawing(svg(study, work), f"Error of each method against {what}", _WIDTH)
-        found.append(Figure(drawn, f"Speed against accuracy: {what}."))
-    return found
+        result.append(Figure(drawn, f"Speed against accuracy: {what}."))
+    return result
 
 
 def _filled(tables: Iterable[Table]) -> list[Block]:

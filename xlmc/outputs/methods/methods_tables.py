@@ -52,20 +52,20 @@ def floor_of(study: Study, statistic: str) -> float:
 
 def reference_table(study: Study) -> Table:
     """Return the reference, with its standard errors."""
-    found = study.reference
+    reference = study.reference
     rows = []
     for forecast in study.model.forecasts:
-        answer, error = found.answers[forecast.name], found.errors[forecast.name]
-        form = found.form(forecast.name)
+        answer, error = reference.answers[forecast.name], reference.errors[forecast.name]
+        form = reference.form(forecast.name)
         numbers = (
             _of_kind(form, each, getattr(answer, each), getattr(error, each), spread=each == "sd")
             for each in STATISTICS
         )
         rows.append((forecast.name, forecast.units, *numbers))
-    how = METHODS[found.sampling].name
+    how = METHODS[reference.sampling].name
     title = (
-        f"Reference: {count_text(found.trials)} trials ({how}, engine {found.engine}, seed {found.seed}), "
-        f"{accepted_text(study)}, {seconds_text(found.seconds)}"
+        f"Reference: {count_text(reference.trials)} trials ({how}, engine {reference.engine}, seed {reference.seed}), "
+        f"{accepted_text(study)}, {seconds_text(reference.seconds)}"
     )
     return _table(title, ("Forecast", "Units", *STATISTICS.values()), rows, 2)
 
@@ -113,12 +113,12 @@ def near_text(study: Study, curve: Curve) -> str:
 
 
 def _need_text(study: Study, curve: Curve) -> str:
-    found = need(study, curve)
-    if not found.forecast:
+    result = need(study, curve)
+    if not result.forecast:
         return _NONE
-    if found.reaches != "yes":
-        return {"no": "never", "unknown": "cannot tell"}[found.reaches]
-    return f"{trials_text(found.trials)} trials, {seconds_text(found.seconds)}"
+    if result.reaches != "yes":
+        return {"no": "never", "unknown": "cannot tell"}[result.reaches]
+    return f"{trials_text(result.trials)} trials, {seconds_text(result.seconds)}"
 
 
 def length_table(study: Study) -> Table:
@@ -163,8 +163,8 @@ def forecast_table(study: Study) -> Table:
         rows.append((forecast.name, forecast.units, f"Theory, {count_text(trials)} independent trials", *theory))
         for curve in study.every:
             if curve.answers:
-                found = {each: curve.lengths[-1].errors[forecast.name, each] for each in STATISTICS}
-                cells = (_of_kind(form, key, each.value, each.error, spread=True) for key, each in found.items())
+                result = {each: curve.lengths[-1].errors[forecast.name, each] for each in STATISTICS}
+                cells = (_of_kind(form, key, each.value, each.error, spread=True) for key, each in result.items())
                 rows.append((forecast.name, forecast.units, curve.method.name, *cells))
     headings = ("Forecast", "Units", "Method", *STATISTICS.values())
     return _table("Root mean square errors of the longest runs, in the forecasts' units", headings, rows, 3)
@@ -175,9 +175,11 @@ def bounds_table(study: Study) -> Table:
     curves = [curve for curve in study.once if curve.ranges]
     rows: list[tuple[str, ...]] = []
     for forecast in study.model.forecasts:
-        found = [curve.ranges.get(forecast.name, (np.nan, np.nan)) for curve in curves]
+        result = [curve.ranges.get(forecast.name, (np.nan, np.nan)) for curve in curves]
         form = study.reference.form(forecast.name)
-        rows.append((forecast.name, forecast.units, *(_ends(form, *each) for each in found), _central(study, forecast)))
+        rows.append(
+            (forecast.name, forecast.units, *(_ends(form, *each) for each in result), _central(study, forecast))
+        )
     last = [curve.lengths[-1] for curve in curves]
     rows.append(("Evaluations", "", *(fixed_text(runs.evaluations, 0) for runs in last), ""))
     rows.append(("Time", "", *(seconds_text(runs.seconds) for runs in last), ""))
@@ -188,29 +190,29 @@ def bounds_table(study: Study) -> Table:
 def ends_lines(study: Study) -> list[tuple[str, str]]:
     """Each optimised bound, and the point at which it is reached: the workbook accepts it, and gives this forecast."""
     units = {forecast.name: f" {forecast.units}" if forecast.units else "" for forecast in study.model.forecasts}
-    found = []
+    result = []
     for curve in study.once:
         for (name, end), point in curve.ends.items():
             value = curve.ranges[name][end == "most"]
-            said = study.reference.form(name).rough(value)
-            sentence = f"{'Lowest' if end == 'least' else 'Highest'} {name}: {said}{units[name]}"
-            found.append(
+            message = study.reference.form(name).rough(value)
+            sentence = f"{'Lowest' if end == 'least' else 'Highest'} {name}: {message}{units[name]}"
+            result.append(
                 (sentence, "; ".join(f"{assumption} = {number_text(at, 10)}" for assumption, at in point.items()))
             )
-    return found
+    return result
 
 
 def cannot_lines(study: Study) -> list[tuple[str, str]]:
     """List method -> what it cannot do, and what its run had to say; methods that could not be used, and why."""
-    found = []
+    result = []
     for curve in study.every:
         parts = [each for each in (cannot(study, curve.method), *curve.remarks) if each]
         if curve.setup > 0.1:
             parts.append(f"its first run took {seconds_text(curve.setup)} longer, to compile or import")
         if parts:
-            found.append((curve.method.name, "; ".join(parts)))
-    found += [(name, f"not used: {why.removesuffix('.')}") for name, why in study.absent.items()]
-    return found
+            result.append((curve.method.name, "; ".join(parts)))
+    result += [(name, f"not used: {why.removesuffix('.')}") for name, why in study.absent.items()]
+    return result
 
 
 def cannot(study: Study, method: Method) -> str:
@@ -247,8 +249,8 @@ def _of_kind(form: Form, statistic: str, value: float, error: float, *, spread: 
     if not np.isfinite(value) or (form.kind is Kind.YES_NO and statistic != "mean"):
         return _NONE
     if np.isfinite(error):
-        found = Estimate(float(value), float(error))
-        return form.spread(found) if spread else form.estimate(found)
+        estimate = Estimate(float(value), float(error))
+        return form.spread(estimate) if spread else form.estimate(estimate)
     return span_text(float(value)) if form.kind is Kind.DATE else form.rough(float(f"{value:.2g}"))
 
 

@@ -138,14 +138,14 @@ class Label:
 
 def column_of(picture: Picture) -> list[Label]:
     """Order the labels from the top: those of one height from the left, so that what leads to them does not cross."""
-    found = [
+    labels = [
         Label(f"{line.name}: {line.needs}", f"{line.name}: {line.brief}", *_end(line, picture.frame[1]), line)
         for line in picture.lines
     ]
     if picture.chosen is not None:
         x, y, text = picture.chosen
-        found.append(Label(text, text, x, y, None))
-    return sorted(found, key=lambda each: (-round(math.log10(each.y), 3), each.x))
+        labels.append(Label(text, text, x, y, None))
+    return sorted(labels, key=lambda each: (-round(math.log10(each.y), 3), each.x))
 
 
 def _end(line: Line, right: float) -> tuple[float, float]:
@@ -177,20 +177,20 @@ def picture_of(study: Study, work: Work) -> Picture | None:
     """Make the chart of a study; None if no forecast varies."""
     if not study.varying:
         return None
-    found, finer = choice(study), choice(study, _finer(study))
+    result, finer = choice(study), choice(study, _finer(study))
     scale = _scale(study)
     lines, absent = [], []
     for curve in study.every:
         if not curve.answers:
             continue
         if not all(runs.measured for runs in curve.lengths):
-            absent.append(f"{curve.method.name} is not drawn: {_needs(study, curve, found, finer)}.")
+            absent.append(f"{curve.method.name} is not drawn: {_needs(study, curve, result, finer)}.")
             continue
-        line = _line(study, curve, work, scale, found, finer)
+        line = _line(study, curve, work, scale, result, finer)
         if line.points:
             lines.append(line)
     marks = (
-        Mark(scale, _mark(study, scale, study.accuracy, found, ", as asked for")),
+        Mark(scale, _mark(study, scale, study.accuracy, result, ", as asked for")),
         Mark(scale / FINER, _mark(study, scale / FINER, _finer(study), finer, "")),
     )
     return Picture(
@@ -198,7 +198,7 @@ def picture_of(study: Study, work: Work) -> Picture | None:
         upwards=_upwards(study),
         lines=tuple(lines),
         marks=marks,
-        chosen=_recommended_run(study, found, work, scale),
+        chosen=_recommended_run(study, result, work, scale),
         frame=_frame(lines, scale),
         absent=tuple(absent),
         brief=f"needs for {_accuracy_text(study, scale)}, for {_accuracy_text(study, scale / FINER)}",
@@ -227,23 +227,23 @@ def _upwards(study: Study) -> str:
     return f"error of the worst number, over the {study.accuracy[0]} asked for"
 
 
-def _line(study: Study, curve: Curve, work: Work, scale: float, found: Choice, finer: Choice) -> Line:
+def _line(study: Study, curve: Curve, work: Work, scale: float, result: Choice, finer: Choice) -> Line:
     once = curve in study.once
-    kind = _kind(study, curve, found)
+    kind = _kind(study, curve, result)
     points = []
     for runs in curve.lengths:
         y, low, high = (scale * each for each in reach_of(study, curve, runs, kind))
         x = float(getattr(runs, work))
         if np.isfinite(y) and y > 0.0 and np.isfinite(x) and x > 0.0:
             points.append(Point(x, y, low, high))
-    ahead = () if once or not points else _ahead(study, curve, work, scale, kind, found.needs[curve])
-    words = _needs(study, curve, found, finer), _briefly(study, curve, found, finer)
+    ahead = () if once or not points else _ahead(study, curve, work, scale, kind, result.needs[curve])
+    words = _needs(study, curve, result, finer), _briefly(study, curve, result, finer)
     return Line(curve, tuple(points), ahead, *words, once)
 
 
-def _kind(study: Study, curve: Curve, found: Choice) -> tuple[str, str]:
+def _kind(study: Study, curve: Curve, result: Choice) -> tuple[str, str]:
     """Return the number that a method has most trouble with."""
-    worst = worst_error(study, curve) if curve in study.once else found.needs[curve]
+    worst = worst_error(study, curve) if curve in study.once else result.needs[curve]
     return worst.forecast, worst.statistic
 
 
@@ -274,7 +274,7 @@ def _work_of(curve: Curve, work: Work, trials: float) -> float:
     return float(spent[-1]) + each * (trials - float(across[-1]))
 
 
-def _needs(study: Study, curve: Curve, found: Choice, finer: Choice) -> str:
+def _needs(study: Study, curve: Curve, result: Choice, finer: Choice) -> str:
     """`1 % in 0.35 s, 0.1 % in 35 s`, or `never`."""
     texts = [_accuracy_text(study, _scale(study) / part) for part in (1.0, FINER)]
     if curve in study.once:
@@ -282,17 +282,17 @@ def _needs(study: Study, curve: Curve, found: Choice, finer: Choice) -> str:
         if near.reaches == "unknown":
             return f"cannot tell at {texts[0]}"
         return "never" if near.reaches == "no" else f"within {texts[0]}" + _also(near.times, texts[1])
-    needs = [each.needs[curve] for each in (found, finer)]
+    needs = [each.needs[curve] for each in (result, finer)]
     if needs[0].reaches == "no":
         return "never"
     return ", ".join(f"{text} {_when(each)}" for text, each in zip(texts, needs, strict=True))
 
 
-def _briefly(study: Study, curve: Curve, found: Choice, finer: Choice) -> str:
+def _briefly(study: Study, curve: Curve, result: Choice, finer: Choice) -> str:
     """`0.35 s, 35 s`, or `never`."""
     if curve in study.once:
         return near_text(study, curve)
-    needs = [each.needs[curve] for each in (found, finer)]
+    needs = [each.needs[curve] for each in (result, finer)]
     if needs[0].reaches == "no":
         return "never"
     return ", ".join(seconds_text(each.seconds) if each.reaches == "yes" else _when(each) for each in needs)
@@ -302,13 +302,13 @@ def _also(times: float, text: str) -> str:
     return f", {text} too" if times <= 1.0 / FINER else ""
 
 
-def _when(found: Need) -> str:
-    if found.reaches == "yes":
-        return f"in {seconds_text(found.seconds)}"
-    return "never" if found.reaches == "no" else "cannot tell"
+def _when(need: Need) -> str:
+    if need.reaches == "yes":
+        return f"in {seconds_text(need.seconds)}"
+    return "never" if need.reaches == "no" else "cannot tell"
 
 
-def _mark(study: Study, height: float, accuracy: tuple[str, float, bool], found: Choice, more: str) -> tuple[str, ...]:
+def _mark(study: Study, height: float, accuracy: tuple[str, float, bool], result: Choice, more: str) -> tuple[str, ...]:
     """Return the accuracy, the cheapest method there, and those that tie with it.
 
     A method that draws nothing states no error. Only the reference shows whether it is near enough: it is named apart.
@@ -317,22 +317,22 @@ def _mark(study: Study, height: float, accuracy: tuple[str, float, bool], found:
     asked = replace(study, accuracy=accuracy)
     near = [c.method.name for c in study.once if c.answers and worst_error(asked, c).reaches == "yes"]
     apart = tuple(f"near enough, as the reference shows: {name}" for name in near)
-    if not found.cheapest:
+    if not result.cheapest:
         return (text, *apart)
-    first, *others = found.cheapest
-    first_line = (f"{text}; cheapest:", f"{first.method.name}, {seconds_text(found.needs[first].seconds)}")
+    first, *others = result.cheapest
+    first_line = (f"{text}; cheapest:", f"{first.method.name}, {seconds_text(result.needs[first].seconds)}")
     named, rest = [f"tie: {each.method.name}" for each in others[:_NAMED]], len(others) - _NAMED
     return (*first_line, *named, *([f"and {rest} more"] if rest > 0 else []), *apart)
 
 
-def _recommended_run(study: Study, found: Choice, work: Work, scale: float) -> tuple[float, float, str] | None:
-    if found.chosen is None:
+def _recommended_run(study: Study, result: Choice, work: Work, scale: float) -> tuple[float, float, str] | None:
+    if result.chosen is None:
         return None
-    wanted = found.needs[found.chosen]
+    wanted = result.needs[result.chosen]
     text = (
-        f"Recommended: {found.chosen.method.name}, {trials_text(wanted.trials)} trials, {seconds_text(wanted.seconds)}"
+        f"Recommended: {result.chosen.method.name}, {trials_text(wanted.trials)} trials, {seconds_text(wanted.seconds)}"
     )
-    return _work_of(found.chosen, work, wanted.trials), scale, text
+    return _work_of(result.chosen, work, wanted.trials), scale, text
 
 
 def _frame(lines: Sequence[Line], scale: float) -> tuple[float, float, float, float]:
@@ -370,19 +370,19 @@ def spread(heights: Sequence[float], apart: float, bottom: float, top: float) ->
             other, more = groups.pop()
             middle, count = (other * more + middle * count) / (more + count), more + count
         groups.append((middle, count))
-    found = [middle + (count - 1) * step / 2.0 - index * step for middle, count in groups for index in range(count)]
-    return _inside(found, step, bottom, top)
+    result = [middle + (count - 1) * step / 2.0 - index * step for middle, count in groups for index in range(count)]
+    return _inside(result, step, bottom, top)
 
 
 def _inside(heights: list[float], step: float, bottom: float, top: float) -> list[float]:
     """Push the heights back from both ends."""
-    found = []
+    result = []
     limit = top
     for height in heights:
-        found.append(min(height, limit))
-        limit = found[-1] - step
+        result.append(min(height, limit))
+        limit = result[-1] - step
     limit = bottom
-    for index in range(len(found) - 1, -1, -1):
-        found[index] = max(found[index], limit)
-        limit = found[index] + step
-    return found
+    for index in range(len(result) - 1, -1, -1):
+        result[index] = max(result[index], limit)
+        limit = result[index] + step
+    return result

@@ -70,8 +70,8 @@ def fitted_curves(x: Floats, bins: Histogram) -> list[FittedCurve]:
     at = np.interp(np.arange(parts * bins.edges.size + 1) / parts, np.arange(edges.size), edges)
     try:
         with np.errstate(all="ignore"):  # over hundreds of orders of magnitude some families have no number to show
-            found = fit(values, kind="counts" if whole and values[0] >= 0 else "continuous", errors=False)
-            fits = (fitted for fitted in found.fits if np.isfinite(fitted.ks))
+            fitting = fit(values, kind="counts" if whole and values[0] >= 0 else "continuous", errors=False)
+            fits = (fitted for fitted in fitting.fits if np.isfinite(fitted.ks))
             curves = (_curve(fitted, at - 0.5 if whole else at, parts) for fitted in fits)
             return list(islice((curve for curve in curves if np.isfinite(curve.shares).all()), _MOST))
     except SimulationError:
@@ -79,5 +79,5 @@ def fitted_curves(x: Floats, bins: Histogram) -> list[FittedCurve]:
 
 
 def _curve(fitted: Fitted, at: Floats, parts: int) -> FittedCurve:
-    said = ", ".join(f"{heading} {text}" for heading, text in parameter_texts(fitted, least=4, same=_SEEN).items())
-    return FittedCurve(fitted.name, said, fitted.ks, parts, np.round(share_at_most(fitted, at), _DIGITS))
+    message = ", ".join(f"{heading} {text}" for heading, text in parameter_texts(fitted, least=4, same=_SEEN).items())
+    return FittedCurve(fitted.name, message, fitted.ks, parts, np.round(share_at_most(fitted, at), _DIGITS))

@@ -44,12 +44,12 @@ _NOTHING = "No forecast has a number in an accepted trial: nothing to draw."
 def charts(simulation: RunResult, figures: Sequence[Figure]) -> Html:
     """Return the section with a chart for every forecast."""
     counted = counted_figures(figures)
-    told = len(simulation.detailed)
-    beyond = first_forecasts("Charts are drawn of", told, len(simulation.model.forecasts) - told)
+    message = len(simulation.detailed)
+    beyond = first_forecasts("Charts are drawn of", message, len(simulation.model.forecasts) - message)
     return element(
         "section",
         element("h2", "Forecasts"),
-        *([element("p", beyond, class_="remark")] if told < len(simulation.model.forecasts) else []),
+        *([element("p", beyond, class_="remark")] if message < len(simulation.model.forecasts) else []),
         *(_how_to_read(simulation, counted) if counted else []),
         *([] if figures else [element("p", _NOTHING, class_="alarm")]),
         element("noscript", element("p", "The charts need JavaScript; every number below is here without it.")),
@@ -84,10 +84,10 @@ def _how_to_read(simulation: RunResult, figures: Sequence[Figure]) -> Iterator[H
 def _shares(figure: Figure) -> Html:
     """Return the bars of an answer that is yes or no, or a text, and the share of each."""
     shares = shares_of(figure.answer)
-    told, others, left = frequent_texts(shares)
+    messages, others, left = frequent_texts(shares)
     rows = [
         element("tr", element("th", text or "(empty)", scope="row"), element("td", share_html(share), class_="number"))
-        for text, share in told.items()
+        for text, share in messages.items()
     ]
     if others:
         share = f"{number_text(100.0 * left, 3)} %"
@@ -144,13 +144,13 @@ def _chart(figure: Figure, result: ForecastResult, index: int) -> Html:
 
 def _statistics(result: ForecastResult) -> Html:
     """Return the numbers that a reader of the chart asks for first; the section Statistics has all."""
-    found = result.statistics
+    description = result.statistics
     shown = {
-        "Mean": found.mean,
-        "Standard deviation": found.standard_deviation,
-        "Minimum": found.minimum,
-        **{f"{number_text(each)} %": found.percentiles[each] for each in _PERCENTS},
-        "Maximum": found.maximum,
+        "Mean": description.mean,
+        "Standard deviation": description.standard_deviation,
+        "Minimum": description.minimum,
+        **{f"{number_text(each)} %": description.percentiles[each] for each in _PERCENTS},
+        "Maximum": description.maximum,
     }
     rows = (
         element(
@@ -161,8 +161,8 @@ def _statistics(result: ForecastResult) -> Html:
     return element("table", element("caption", "All accepted trials"), element("tbody", *rows), class_="beside")
 
 
-def _statistic(result: ForecastResult, label: str, found: Estimate) -> Html:
-    return estimate_html(found, result.form.spread if label == "Standard deviation" else result.form.estimate)
+def _statistic(result: ForecastResult, label: str, estimate: Estimate) -> Html:
+    return estimate_html(estimate, result.form.spread if label == "Standard deviation" else result.form.estimate)
 
 
 def _views(about: str) -> Html:

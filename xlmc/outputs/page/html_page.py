@@ -162,7 +162,7 @@ def page_text(simulation: RunResult, *, beside: RunResult | None = None, command
 
 def _page(simulation: RunResult, beside: RunResult | None, command: str | None) -> str:
     figures, name = figures_of(simulation, simulation.detailed), simulation.model.workbook.name
-    found = None if simulation.weighting is not None else sensitivities(simulation)
+    result = None if simulation.weighting is not None else sensitivities(simulation)
     parts = {
         "answer": answer(simulation),
         "second": EMPTY if beside is None else second_run(simulation, beside),
@@ -170,11 +170,11 @@ def _page(simulation: RunResult, beside: RunResult | None, command: str | None) 
         "overlay": overlays(figures) if len(figures) < _MANY else EMPTY,
         "statistics": statistics(simulation),
         "certainty": certainty(simulation),
-        "sensitivity": EMPTY if found is None else dependence(found, simulation.model.workbook),
+        "sensitivity": EMPTY if result is None else dependence(result, simulation.model.workbook),
         "checks": checks(simulation),
         "evidence": evidence(simulation),
         "filters": filters(simulation),
-        "limits": EMPTY if found is None else limits(found),
+        "limits": EMPTY if result is None else limits(result),
         "assumptions": assumptions(simulation),
         "notices": notices(simulation),
         "record": record(make_record(simulation, command)),
@@ -206,8 +206,8 @@ def _page(simulation: RunResult, beside: RunResult | None, command: str | None) 
 def _packed_section(key: str, part: Html) -> Html:
     """Make a section that holds another one packed until its button is pressed: many elements make browsers slow."""
     button = element("button", "Show", type="button", data_packed=_packed(part.source))
-    said = element("p", button, " This page is large: this part is shown, and printed, when it is asked for.")
-    return element("section", element("h2", _LINKS[key]), said, id=key)
+    message = element("p", button, " This page is large: this part is shown, and printed, when it is asked for.")
+    return element("section", element("h2", _LINKS[key]), message, id=key)
 
 
 def _packed(text: str) -> str:

@@ -37,7 +37,7 @@ _Given = dict[tuple[str, str], tuple[str, str]]
 def second_run(first: RunResult, second: RunResult) -> Html:
     """Return the section that says what the second run is, and how its answers differ."""
     model, rows = second.model, summarise(first)
-    said = (
+    message = (
         f": {counted_text(second.evaluated, 'trial')}, {count_text(second.accepted)} accepted; seed "
         f"{second.settings.seed}. In each chart the "
         "dashed purple line is the second run, as if it had as many accepted trials as the first; its certainty stands "
@@ -47,7 +47,7 @@ def second_run(first: RunResult, second: RunResult) -> Html:
     return element(
         "section",
         element("h2", "Beside a second run"),
-        element("p", "The second run is of ", element("bdi", model.workbook.name), said),
+        element("p", "The second run is of ", element("bdi", model.workbook.name), message),
         _answers(pairs) if pairs else EMPTY,
         element("p", _DIFFERENCE, class_="remark") if pairs else EMPTY,
         *(element("p", sentence, class_="remark") for sentence in _alone(rows, second)),
@@ -107,21 +107,21 @@ def _difference(first: Estimate, second: Estimate) -> Estimate:
 def _alone(rows: list[SummaryRow], second: RunResult) -> Iterator[str]:
     shown = {name_key(row.name) for row in rows if partner_of(row, second) is not None}
     others = ("first", rows), ("second", summarise(second))
-    for which, found in others:
-        names = [row.name for row in found if name_key(row.name) not in shown]
+    for which, result in others:
+        names = [row.name for row in result if name_key(row.name) not in shown]
         if names:
             yield f"Of the {which} run alone, by name and units: {'; '.join(names)}."
 
 
 def _given_to(run: RunResult) -> _Given:
     model = run.model
-    found = {("Run", what): (what, said) for what, said in _settings(run)}
+    result = {("Run", what): (what, message) for what, message in _settings(run)}
     for a in model.assumptions:
         form = model.input_forms.get(a.name, PLAIN)
         words = f"held at {form.number(a.base)}" if a.frozen and a.base is not None else distribution_text(a)
         unused = "" if status(model, a.name, a.frozen) in ("drawn", "frozen") else ", not needed"
-        found["Assumption", name_key(a.name)] = a.name, words + unused
-    return found | {("Filter", name_key(f.name)): (f.name, limits_text(f)) for f in model.filters}
+        result["Assumption", name_key(a.name)] = a.name, words + unused
+    return result | {("Filter", name_key(f.name)): (f.name, limits_text(f)) for f in model.filters}
 
 
 def _settings(run: RunResult) -> Iterator[tuple[str, str]]:

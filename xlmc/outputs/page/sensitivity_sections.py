@@ -31,38 +31,38 @@ if TYPE_CHECKING:
 __all__ = ["dependence", "limits"]
 
 
-def dependence(found: Sensitivities, source: Workbook) -> Html:
+def dependence(sensitivities: Sensitivities, source: Workbook) -> Html:
     """Return the section with what each forecast depends on; nothing if there is no forecast."""
-    if not found.forecasts:
+    if not sensitivities.forecasts:
         return EMPTY
     return element(
         "section",
         element("h2", "Sensitivity: what the answers depend on"),
-        *(element("p", said, class_="remark") for said in sensitivity_sentences(found, source)),
-        *(_forecast(each, found) for each in found.forecasts),
+        *(element("p", message, class_="remark") for message in sensitivity_sentences(sensitivities, source)),
+        *(_forecast(each, sensitivities) for each in sensitivities.forecasts),
         id="sensitivity",
     )
 
 
-def _forecast(found: ForecastSensitivity, whole: Sensitivities) -> Html:
-    heading = element("h3", found.forecast)
-    if not found.influences and not found.bars:
+def _forecast(sensitivity: ForecastSensitivity, whole: Sensitivities) -> Html:
+    heading = element("h3", sensitivity.forecast)
+    if not sensitivity.influences and not sensitivity.bars:
         return element("article", heading, element("p", "No assumption moves it."))
-    tables = [influence_table(found, whole.sobol_trials > 0)] if found.influences else []
-    tables += [move_table(found)] if found.bars else []
-    return _article(heading, sensitivity_figures(found, whole.sobol_trials), "The numbers", tables)
+    tables = [influence_table(sensitivity, whole.sobol_trials > 0)] if sensitivity.influences else []
+    tables += [move_table(sensitivity)] if sensitivity.bars else []
+    return _article(heading, sensitivity_figures(sensitivity, whole.sobol_trials), "The numbers", tables)
 
 
-def limits(found: Sensitivities) -> Html:
+def limits(sensitivities: Sensitivities) -> Html:
     """Return the section with how the answers move with each limit; nothing if no filter has one."""
-    if not (found.filter_limits or found.varying_limits or found.omitted_limits):
+    if not (sensitivities.filter_limits or sensitivities.varying_limits or sensitivities.omitted_limits):
         return EMPTY
-    forecasts = {each.forecast: each for each in found.forecasts}
+    forecasts = {each.forecast: each for each in sensitivities.forecasts}
     return element(
         "section",
         element("h2", "Filter limits: how the answers move as each limit moves"),
-        *(element("p", said, class_="remark") for said in limit_sentences(found)),
-        *(_limit(limit, forecasts) for limit in found.filter_limits),
+        *(element("p", message, class_="remark") for message in limit_sentences(sensitivities)),
+        *(_limit(limit, forecasts) for limit in sensitivities.filter_limits),
         id="limits",
     )
 

@@ -66,9 +66,9 @@ def answer(simulation: RunResult) -> Html:
 
 def certainty(simulation: RunResult, names: Collection[str] | None = None) -> Html:
     """How certain the central ranges are, of the forecasts of these names; None: of all."""
-    said = "The share of the accepted trials below, in and above each central range, as it is rounded here."
+    message = "The share of the accepted trials below, in and above each central range, as it is rounded here."
     blocks = certainty_blocks(simulation, _named(simulation, names))
-    return _section("certainty", "Certainty of ranges", (Paragraph(said, "small"), *blocks))
+    return _section("certainty", "Certainty of ranges", (Paragraph(message, "small"), *blocks))
 
 
 def statistics(simulation: RunResult, names: Collection[str] | None = None) -> Html:
@@ -81,8 +81,8 @@ def statistics(simulation: RunResult, names: Collection[str] | None = None) -> H
         )
         for name in _named(simulation, names)
     )
-    said = f"Of the accepted trials. From … to: the 95 % interval of each number. {statistics_sentence(simulation)}"
-    head = element("h2", "Statistics"), element("p", said, class_="remark")
+    message = f"Of the accepted trials. From … to: the 95 % interval of each number. {statistics_sentence(simulation)}"
+    head = element("h2", "Statistics"), element("p", message, class_="remark")
     return element("section", *head, *forecasts, id="statistics")
 
 
@@ -103,8 +103,8 @@ def evidence(simulation: RunResult) -> Html:
 
 def filters(simulation: RunResult) -> Html:
     """Return how many trials were run and accepted, and what each filter rejected."""
-    found = (*count_blocks(simulation), *filter_blocks(simulation, full=True))
-    return _section("filters", "Trials and filters", found)
+    result = (*count_blocks(simulation), *filter_blocks(simulation, full=True))
+    return _section("filters", "Trials and filters", result)
 
 
 def assumptions(simulation: RunResult) -> Html:
@@ -117,7 +117,7 @@ def assumptions(simulation: RunResult) -> Html:
         "section",
         element("h2", "Assumptions, before filtering and accepted" if simulation.filters_act else "Assumptions"),
         *([element("p", meaning_of_marks())] if simulation.filters_act else []),
-        *(element("p", said, class_="remark") for said in assumption_remarks(simulation)),
+        *(element("p", message, class_="remark") for message in assumption_remarks(simulation)),
         element("div", table, class_="wide-table paired"),
         blocks_html(correlation_blocks(simulation)),
         id="assumptions",
@@ -126,15 +126,15 @@ def assumptions(simulation: RunResult) -> Html:
 
 def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
     """Return an assumption's name above its rows, in a table body of their own so that they stay together."""
-    found = filter_effect_of(simulation, assumption.name)
+    effect = filter_effect_of(simulation, assumption.name)
     form = simulation.model.input_forms.get(assumption.name, PLAIN)
-    shape = EMPTY if found is None else _shape(simulation, assumption.name)
+    shape = EMPTY if effect is None else _shape(simulation, assumption.name)
     named = element("tr", element("th", shape, *_name_line(assumption, form), scope="rowgroup", colspan=str(_COLUMNS)))
-    if found is None:
+    if effect is None:
         why = element("td", status(simulation.model, assumption.name, assumption.frozen), colspan=str(_COLUMNS))
         return element("tbody", named, element("tr", why))
     rows = assumption_rows(simulation, assumption.name)
-    changes = assumption_change(found) if len(rows) > 1 else ("", "")
+    changes = assumption_change(effect) if len(rows) > 1 else ("", "")
     ends = [("", "")] * (len(rows) - 1) + [changes]
     lines = ((*row, *end) for row, end in zip(rows, ends, strict=True))
     return element("tbody", named, *(element("tr", *map(cell_html, line)) for line in lines))
@@ -142,8 +142,8 @@ def _assumption(simulation: RunResult, assumption: Assumption) -> Html:
 
 def _shape(simulation: RunResult, name: str) -> Html:
     """Draw the draws before filtering and the accepted ones in a small picture; nothing if all draws are one value."""
-    found = shape_chart(simulation, name)
-    return EMPTY if found is None else picture_html(found, "shape")
+    chart = shape_chart(simulation, name)
+    return EMPTY if chart is None else picture_html(chart, "shape")
 
 
 def _name_line(assumption: Assumption, form: Form) -> Iterator[Html | str]:
@@ -158,37 +158,39 @@ def notices(simulation: RunResult) -> Html:
     return _section("notices", "Notices", notice_blocks(simulation))
 
 
-def _section(key: str, heading: str, found: Iterable[Block]) -> Html:
+def _section(key: str, heading: str, result: Iterable[Block]) -> Html:
     """Return a section of the page; nothing where it has no blocks."""
-    blocks = [*found]
+    blocks = [*result]
     return element("section", element("h2", heading), blocks_html(blocks), id=key) if blocks else EMPTY
 
 
-def record(found: Record) -> Html:
+def record(result: Record) -> Html:
     """Return the record of the run: every part of it can be opened, and open parts are printed."""
-    said = "What the numbers depend on, and how to repeat them. Every number is in full. Only open parts are printed."
+    message = (
+        "What the numbers depend on, and how to repeat them. Every number is in full. Only open parts are printed."
+    )
     return element(
         "section",
         element("h2", "Record"),
-        element("p", said),
-        *(_record_section(section) for section in found.sections),
+        element("p", message),
+        *(_record_section(section) for section in result.sections),
         id="record",
     )
 
 
 def _record_section(section: Section) -> Html:
-    found = [element("summary", section.title)]
+    results = [element("summary", section.title)]
     entries = [entry for entry in section.entries if not entry.key.startswith("packed_")]  # for programs alone
     if entries:
-        found.append(element("dl", *(each for entry in entries for each in _record_entry(section.key, entry))))
+        results.append(element("dl", *(each for entry in entries for each in _record_entry(section.key, entry))))
     if section.table is not None:
-        found.append(_record_table(section.table) if section.table.rows else element("p", "None"))
-    return element("details", *found, open="" if section.key in _OPEN else None, data_section=section.key)
+        results.append(_record_table(section.table) if section.table.rows else element("p", "None"))
+    return element("details", *results, open="" if section.key in _OPEN else None, data_section=section.key)
 
 
 def _record_entry(section: str, entry: Entry) -> tuple[Html, Html]:
-    said = _value_text(entry.value)
-    shown = element("code", said) if entry.key in _CODE else element("span", said)
+    message = _value_text(entry.value)
+    shown = element("code", message) if entry.key in _CODE else element("span", message)
     return element("dt", entry.label), element("dd", shown, data_key=f"{section}.{entry.key}")
 
 

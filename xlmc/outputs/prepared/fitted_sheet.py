@@ -161,7 +161,7 @@ def _parameter_correlations(fits: Fits) -> Iterator[tuple[str, str, float]]:
         if values.std() > 0.0
     }
     for (first, of_first), (second, of_second) in combinations(repeated, 2):
-        found = rank_correlation(repeated[first, of_first], repeated[second, of_second])
-        clear = found.error is not None and abs(found.value) > _CLEAR * found.error
+        estimate = rank_correlation(repeated[first, of_first], repeated[second, of_second])
+        clear = estimate.error is not None and abs(estimate.value) > _CLEAR * estimate.error
         if clear:
-            yield f"{first}: {of_first}", f"{second}: {of_second}", round(found.value, 4)
+            yield f"{first}: {of_first}", f"{second}: {of_second}", round(estimate.value, 4)

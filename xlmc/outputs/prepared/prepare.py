@@ -36,19 +36,19 @@ class Prepared:
     """A workbook with tables, not written yet.
 
     Attributes:
-        found: the cells that have rows now.
+        proposals: the cells that have rows now.
         sheet: the new sheet; empty where all rows were added to tables that were there.
         data: the file; the one that was read where nothing was added.
     """
 
-    found: Proposals
+    proposals: Proposals
     sheet: str
     data: bytes = field(repr=False)
 
     @property
     def is_new(self) -> bool:
         """Return whether anything was added."""
-        return bool(self.sheet or self.found.assumptions or self.found.forecasts)
+        return bool(self.sheet or self.proposals.assumptions or self.proposals.forecasts)
 
 
 def prepared(
@@ -74,12 +74,12 @@ def prepared(
     cells |= {cell for kind in _KINDS for table in tables[kind] for cell in _pointed_to(book, table)}
     results = {*result_sheets(book.parts)}
     left_out = {sheet.name for sheet in book.sheets.values() if sheet.part in results}
-    found = proposals(book, cells, assumptions, forecasts, left_out)
+    result = proposals(book, cells, assumptions, forecasts, left_out)
     rows = {
-        "xlmc_assumptions": [_row(each) for each in found.assumptions],
-        "xlmc_forecasts": [_row(each) for each in found.forecasts],
+        "xlmc_assumptions": [_row(each) for each in result.assumptions],
+        "xlmc_forecasts": [_row(each) for each in result.forecasts],
     }
-    return Prepared(found, *_with_rows(book, tables, rows))
+    return Prepared(result, *_with_rows(book, tables, rows))
 
 
 def with_tables(book: Workbook, rows: Mapping[str, Sequence[NewRow]], title: str) -> bytes:

@@ -159,15 +159,15 @@ def contents_now(workbook: Workbook, recorded: Mapping[Cell, str]) -> dict[Cell,
     saved = {cell for cell, text in recorded.items() if SAVED in text}
     tabulated = {cell for cell, text in recorded.items() if text.startswith(TABULATED)}
     cells = [*recorded, *sorted(definition_cells(workbook) - recorded.keys())]
-    found = {
+    result = {
         cell: content_text(workbook, cell, saved, tabulated) for cell in cells if workbook.sheet_of(cell) is not None
     }
-    return {cell: text for cell, text in found.items() if text}
+    return {cell: text for cell, text in result.items() if text}
 
 
-def cell_changes(recorded: Mapping[Cell, str], found: Mapping[Cell, str]) -> list[Change]:
+def cell_changes(recorded: Mapping[Cell, str], result: Mapping[Cell, str]) -> list[Change]:
     """Return the cells that hold something else than they did."""
-    return list(_differing("cell", recorded, found))
+    return list(_differing("cell", recorded, result))
 
 
 def is_rewritten_number(change: Change) -> bool:
@@ -184,11 +184,11 @@ def is_emptied_text(change: Change) -> bool:
     return change.kind == "cell" and change.old == '""' and change.new is None
 
 
-def structure_changes(recorded: Record, found: Record) -> list[Change]:
+def structure_changes(recorded: Record, result: Record) -> list[Change]:
     """Return the names and tables that mean something else than they did."""
     old, new = (
         {(str(row["what"]), str(row["name"])): str(row["means"]) for row in record.rows("structure")}
-        for record in (recorded, found)
+        for record in (recorded, result)
     )
     return [
         Change(what, name, old.get((what, name)), new.get((what, name)))
@@ -197,11 +197,11 @@ def structure_changes(recorded: Record, found: Record) -> list[Change]:
     ]
 
 
-def definition_changes(recorded: Record, found: Record) -> list[Change]:
+def definition_changes(recorded: Record, result: Record) -> list[Change]:
     """Return the definitions that are not as they were."""
     changes: list[Change] = []
     for section, kind, naming, keys in _DEFINITIONS:
-        old, new = (_rows(record, section, naming) for record in (recorded, found))
+        old, new = (_rows(record, section, naming) for record in (recorded, result))
         for name in dict.fromkeys((*old, *new)):
             if name not in old or name not in new:
                 changes.append(Change(kind, name, *(_presence(name in rows) for rows in (old, new))))
@@ -222,31 +222,32 @@ def same_definition(was: str, now: str) -> bool:
     return _NUMBER.sub(_without_form, was) == _NUMBER.sub(_without_form, now)
 
 
-def _without_form(found: re.Match[str]) -> str:
-    number = Decimal(found["digits"].replace(",", ""))
-    return f"{found['sign']}{(number / 100 if found['percent'] else number).normalize():f}"
+def _without_form(match: re.Match[str]) -> str:
+    number = Decimal(match["digits"].replace(",", ""))
+    return f"{match['sign']}{(number / 100 if match['percent'] else number).normalize():f}"
 
 
-def environment_changes(recorded: Record, found: Record) -> list[Change]:
+def environment_changes(recorded: Record, result: Record) -> list[Change]:
     """Return the versions and the processor that are not as they were."""
     changes: list[Change] = []
     for section in ("software", "processor"):
         old, new = (
-            {entry.key: _text(entry.value) for entry in record.section(section).entries} for record in (recorded, found)
+            {entry.key: _text(entry.value) for entry in record.section(section).entries}
+            for record in (recorded, result)
         )
         changes += _differing(section, old, new)
     return changes
 
 
-def number_changes(recorded: Record, found: Record) -> list[NumberChange]:
+def number_changes(recorded: Record, result: Record) -> list[NumberChange]:
     """Return the recorded numbers that the repeat did not give to the last bit."""
     changes = [
-        _number(f"trials: {key.replace('_', ' ')}", recorded[f"counts.{key}"], found[f"counts.{key}"], 0.0)
+        _number(f"trials: {key.replace('_', ' ')}", recorded[f"counts.{key}"], result[f"counts.{key}"], 0.0)
         for key in _COUNTS
     ]
     for section in ("filters", "forecast_filters", "forecasts", "checks"):
         naming = ("name", "only_for") if section == "forecast_filters" else ("name",)
-        old, new = (_rows(record, section, naming) for record in (recorded, found))
+        old, new = (_rows(record, section, naming) for record in (recorded, result))
         for name in (name for name in old if name in new):
             scale = _as_number(new[name].get("standard_deviation")) or 0.0
             counted, measured = _COUNTED[section], _STATISTICS if section == "forecasts" else ()

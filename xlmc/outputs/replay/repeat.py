@@ -153,8 +153,8 @@ def replay(
 def _style_of(record: Record) -> str:
     """Return the number style of a recorded run; empty where it has none of those that there are."""
     entries = record.section("settings").entries if "settings" in record else ()
-    found = {entry.key: entry.value for entry in entries}.get("number_style")
-    return str(found) if found in STYLES else ""
+    result = {entry.key: entry.value for entry in entries}.get("number_style")
+    return str(result) if result in STYLES else ""
 
 
 def _fed_by(record: Record, path: Path, books: Iterable[str | Path]) -> tuple[Feed, ...]:
@@ -164,7 +164,7 @@ def _fed_by(record: Record, path: Path, books: Iterable[str | Path]) -> tuple[Fe
         WorkbookError: one is missing, or is not the one that did.
     """
     given = {Path(each).name.casefold(): Path(each) for each in books}
-    found = []
+    feeds = []
     for feed, sha256 in recorded_feeds(record):
         file = given.get(feed.file.casefold(), path.with_name(feed.file))
         if not file.is_file():
@@ -173,8 +173,8 @@ def _fed_by(record: Record, path: Path, books: Iterable[str | Path]) -> tuple[Fe
         if hashlib.sha256(file.read_bytes()).hexdigest() != sha256:
             message = f"{feed.file} is not the workbook that fed the run: its SHA-256 is not {sha256}"
             raise WorkbookError(message, where=file, hint=f"find that file, and name it: --book FOLDER/{feed.file}")
-        found.append(replace(feed, source=str(file)))
-    return tuple(found)
+        feeds.append(replace(feed, source=str(file)))
+    return tuple(feeds)
 
 
 def recorded_run(
@@ -191,12 +191,12 @@ def recorded_run(
         WorkbookError: the file cannot be read, holds no record, or the repeated run differs from the recorded one.
         XlmcError: as for `replay`.
     """
-    found = replay(path, progress=progress, functions=functions)
-    if found.repeated is None or not found.identical:
+    result = replay(path, progress=progress, functions=functions)
+    if result.repeated is None or not result.identical:
         hint = f"xlmc replay {Path(path).name} says what differs"
         raise WorkbookError("the run that is recorded here cannot be repeated as it was", where=path, hint=hint)
-    run = as_recorded(found.repeated, found.record, recorded_settings(found.record))
-    run.model.workbook = replace(run.model.workbook, sha256=str(found.record["file.sha256"]))
+    run = as_recorded(result.repeated, result.record, recorded_settings(result.record))
+    run.model.workbook = replace(run.model.workbook, sha256=str(result.record["file.sha256"]))
     return run
 
 
@@ -221,12 +221,12 @@ def _replay(
         if not changes and version == __version__:
             raise
         return Replayed(record, None, fault, changes, (), (), same_bits=False, version=version, rules=rules)
-    found = make_record(repeated)
-    same_bits = record["run.fingerprint"] == found["run.fingerprint"]
+    result = make_record(repeated)
+    same_bits = record["run.fingerprint"] == result["run.fingerprint"]
     try:
-        numbers = number_changes(record, found)
-        of_the_model = (*structure_changes(record, found), *definition_changes(record, found))
-        environment = tuple(environment_changes(record, found))
+        numbers = number_changes(record, result)
+        of_the_model = (*structure_changes(record, result), *definition_changes(record, result))
+        environment = tuple(environment_changes(record, result))
     except KeyError as error:
         raise _lacking_error(repr(error.args[0]), version, path) from error
     changes = (*cell_changes(cells, contents_now(workbook, cells) | needed_contents(model)), *of_the_model)

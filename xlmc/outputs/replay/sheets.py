@@ -103,21 +103,23 @@ def compare_sheets(workbook: Workbook, run: RunResult, command: str | None, clos
     quick = _compare_short(workbook, built, closeness)
     if quick is not None:
         return quick
-    found = _match_sheets(workbook, built)
-    rows = _trial_rows(found["Trials"]) if "Trials" in found else TRIAL_ROWS
+    result = _match_sheets(workbook, built)
+    rows = _trial_rows(result["Trials"]) if "Trials" in result else TRIAL_ROWS
     if rows != TRIAL_ROWS:
         built = _build(run, command, rows)
-    return _compared(workbook, built, found, closeness)
+    return _compared(workbook, built, result, closeness)
 
 
-def _compared(workbook: Workbook, built: Workbook, found: Mapping[str, Sheet], closeness: Closeness) -> SheetComparison:
+def _compared(
+    workbook: Workbook, built: Workbook, result: Mapping[str, Sheet], closeness: Closeness
+) -> SheetComparison:
     pairs = [
-        _Pair(built, workbook, built.sheets[name], found[name], closeness) for name in built.sheets if name in found
+        _Pair(built, workbook, built.sheets[name], result[name], closeness) for name in built.sheets if name in result
     ]
     return SheetComparison(
         sheets=tuple(pair.sheet.name for pair in pairs),
         differences=tuple(difference for pair in pairs for difference in pair.differences()),
-        missing=tuple(name for name in built.sheets if name not in found),
+        missing=tuple(name for name in built.sheets if name not in result),
         left_out=tuple(sentence for pair in pairs for sentence in pair.left_out()),
     )
 
@@ -139,8 +141,8 @@ def _compare_short(workbook: Workbook, built: Workbook, closeness: Closeness) ->
     short_built = replace(built, parts=parts_built, sheets=built.sheets.with_parts(parts_built))
     short_file = replace(workbook, parts=parts_file, sheets=workbook.sheets.with_parts(parts_file))
     sheets = {name: short_file.sheets[own] for name, own in marked.items()}
-    found = _compared(short_file, short_built, sheets, closeness)
-    return found if found.same and not found.left_out else None
+    comparison = _compared(short_file, short_built, sheets, closeness)
+    return comparison if comparison.same and not comparison.left_out else None
 
 
 _ROW: Final = re.compile(rb"<row [^>]*[^/]>.*?</row>", re.DOTALL)
@@ -182,7 +184,7 @@ def _rows_by_text(xml: bytes) -> dict[bytes, tuple[bytes, ...]]:
 
 
 def _without(xml: bytes, rows: Collection[bytes]) -> bytes:
-    return _ROW.sub(lambda found: b"" if _STYLE.sub(b"", found[0]) in rows else found[0], xml)
+    return _ROW.sub(lambda match: b"" if _STYLE.sub(b"", match[0]) in rows else match[0], xml)
 
 
 def _build(run: RunResult, command: str | None, rows: int) -> Workbook:
@@ -299,12 +301,12 @@ class _Pair:
     @cached_property
     def _keys(self) -> dict[int, str]:
         """Row of the Record -> its key, or its section's key where the row has none, as the headings of a table."""
-        found, section = {}, ""
+        result, section = {}, ""
         for row in range(1, max((row for row, _ in {**self.expected.cells, **self.sheet.cells}), default=0) + 1):
             key = self._expected((row, 1)).value
             section = key if isinstance(key, str) and key.isalpha() else section
-            found[row] = key if isinstance(key, str) else section
-        return found
+            result[row] = key if isinstance(key, str) else section
+        return result
 
     def _scale(self, row: int) -> float:
         return self._scales.get(row, 0.0)
@@ -312,22 +314,22 @@ class _Pair:
     @cached_property
     def _scales(self) -> dict[int, float]:
         """Row -> its largest number."""
-        found: dict[int, float] = {}
+        result: dict[int, float] = {}
         for (row, _), content in self.expected.cells.items():
             if is_number(content.value):
-                found[row] = max(found.get(row, 0.0), abs(content.value))
-        return found
+                result[row] = max(result.get(row, 0.0), abs(content.value))
+        return result
 
     @cached_property
     def _fillable(self) -> frozenset[_RowColumn]:
         """The cells that a person may fill in: the formulas beside them read them."""
-        found = set()
+        result = set()
         for (row, column), content in self.expected.cells.items():
             if content.formula is not None:
                 host = Cell(self.expected.name, row, column)
                 areas = mentioned(content.formula, host, self.built)
-                found |= {cell[1:] for area in areas if area.sheet == self.expected.name for cell in area.cells()}
-        return frozenset(at for at in found if at in self.expected.cells and self.expected.cells[at].formula is None)
+                result |= {cell[1:] for area in areas if area.sheet == self.expected.name for cell in area.cells()}
+        return frozenset(at for at in result if at in self.expected.cells and self.expected.cells[at].formula is None)
 
     @cached_property
     def _own_rows(self) -> frozenset[int]:
@@ -344,8 +346,8 @@ class _Pair:
     @cached_property
     def _recomputed(self) -> dict[_RowColumn, CellContent]:
         """The formulas of these rows, with what they give then."""
-        found = {at: self.sheet.cells.get(at, _BLANK) for at in self._fillable}
-        return _count_formulas(self.built, self.expected, found, self._own_rows) if self._own_rows else {}
+        result = {at: self.sheet.cells.get(at, _BLANK) for at in self._fillable}
+        return _count_formulas(self.built, self.expected, result, self._own_rows) if self._own_rows else {}
 
     def _content(self, at: _RowColumn) -> CellContent:
         return self.sheet.cells.get(self._in_file(at), _BLANK)
@@ -363,14 +365,14 @@ def _match_sheets(workbook: Workbook, built: Workbook) -> dict[str, Sheet]:
         workbook: the file.
         built: the result sheets of the run, and nothing else.
     """
-    found = _by_mark(workbook, built)
+    result = _by_mark(workbook, built)
     for name in built.sheets:
-        if name not in found:
-            taken = {sheet.name for sheet in found.values()}
+        if name not in result:
+            taken = {sheet.name for sheet in result.values()}
             likest = _likest(built.sheets[name], workbook, taken)
             if likest is not None:
-                found[name] = likest
-    return found
+                result[name] = likest
+    return result
 
 
 def _by_mark(workbook: Workbook, built: Workbook) -> dict[str, Sheet]:
@@ -422,9 +424,9 @@ def _count_formulas(
     formulas_at = [at for at, content in sheet.cells.items() if content.formula is not None and at[0] in rows]
     cells = {at: Cell(sheet.name, *at) for at in formulas_at}
     lowering = Lowering(build_graph(Resolver(workbook), [*cells.values()], frozenset()), {}, {})
-    found = {}
+    result = {}
     for at, cell in cells.items():
         value = lowering.value(cell)
         assert value is not None  # nothing that it reads is drawn
-        found[at] = replace(sheet.cells[at], value=value.objects().ravel()[0])
-    return found
+        result[at] = replace(sheet.cells[at], value=value.objects().ravel()[0])
+    return result

@@ -49,31 +49,33 @@ def compare_shown(
     command = _entry(record, "run.command")
     sheets = compare_sheets(workbook, run, None if command is None else str(command), closeness)
     own = _compare_own_cells(workbook, run, closeness)
-    found = SheetComparison(
+    comparison = SheetComparison(
         sheets.sheets,
         (*own.differences, *sheets.differences),
         sheets.missing,
         (*own.left_out, *sheets.left_out),
     )
-    return _of_version(found, recorded_version(record))
+    return _of_version(comparison, recorded_version(record))
 
 
-def _of_version(found: SheetComparison, version: str) -> SheetComparison:
+def _of_version(comparison: SheetComparison, version: str) -> SheetComparison:
     """Return the comparison without the sheets that another version of xlmc laid out differently: these cannot be
     compared.
     """
-    if found.same or version == __version__:
-        return found
-    laid_out = {each.where.sheet for each in found.differences if not (is_number(each.says) and is_number(each.gives))}
-    otherwise = dict.fromkeys((*found.missing, *(each.where.sheet for each in found.differences)))
+    if comparison.same or version == __version__:
+        return comparison
+    laid_out = {
+        each.where.sheet for each in comparison.differences if not (is_number(each.says) and is_number(each.gives))
+    }
+    otherwise = dict.fromkeys((*comparison.missing, *(each.where.sheet for each in comparison.differences)))
     wrote = f"xlmc {version} wrote" if version else "another xlmc wrote"
     reason = tuple(
         f"the sheet {sheet}, which {wrote} differently from {__version__}"
         for sheet in otherwise
-        if sheet in laid_out or sheet in found.missing
+        if sheet in laid_out or sheet in comparison.missing
     )
-    differences = tuple(each for each in found.differences if each.where.sheet not in laid_out)
-    return replace(found, differences=differences, missing=(), left_out=(*found.left_out, *reason))
+    differences = tuple(each for each in comparison.differences if each.where.sheet not in laid_out)
+    return replace(comparison, differences=differences, missing=(), left_out=(*comparison.left_out, *reason))
 
 
 def _compare_own_cells(workbook: Workbook, run: RunResult, closeness: Closeness) -> SheetComparison:
@@ -88,17 +90,17 @@ def _compare_own_cells(workbook: Workbook, run: RunResult, closeness: Closeness)
         closeness: how far numbers may be apart.
     """
     values = run.shown_results.cells
-    found = {cell: workbook.content(cell) for cell in sorted(values)}
-    empty = [cell for cell, content in found.items() if _is_uncomputed(content)]
+    result = {cell: workbook.content(cell) for cell in sorted(values)}
+    empty = [cell for cell, content in result.items() if _is_uncomputed(content)]
     if empty:
         asking = set(run.model.definitions.results) | set(run.model.definitions.unavailable)
-        found = {cell: content for cell, content in found.items() if cell in asking and cell not in empty}
+        result = {cell: content for cell, content in result.items() if cell in asking and cell not in empty}
     differences = (
         CellDifference(cell, content.value, values[cell])
-        for cell, content in found.items()
+        for cell, content in result.items()
         if not closeness.equal(content.value, values[cell], computed=True)
     )
-    return SheetComparison(differences=tuple(differences), left_out=_left_out_text(len(values) - len(found), empty))
+    return SheetComparison(differences=tuple(differences), left_out=_left_out_text(len(values) - len(result), empty))
 
 
 def _is_uncomputed(content: CellContent) -> bool:
@@ -138,13 +140,13 @@ def _entry(record: Record, key: str) -> Value:
 
 
 def _rename(model: CompiledModel, name: str) -> CompiledModel:
-    found = copy.copy(model)
-    found.workbook = replace(model.workbook, name=name)
+    result = copy.copy(model)
+    result.workbook = replace(model.workbook, name=name)
     own = (str(model.path), model.workbook.name)
-    found.notices = tuple(
+    result.notices = tuple(
         replace(notice, where=name) if str(notice.where) in own else notice for notice in model.notices
     )
-    return found
+    return result
 
 
 def _recorded_end(record: Record) -> Stopped:

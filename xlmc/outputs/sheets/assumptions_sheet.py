@@ -101,13 +101,13 @@ def _draw_shapes(page: Page, book: Workbook, simulation: RunResult, curves: Curv
     """Draw how often each assumption has each value, beside its lines."""
     drawn = []
     for index, assumption in enumerate(simulation.model.assumptions[:DRAWN]):
-        found = shapes_of(simulation, assumption.name)
-        if found is not None:
-            drawn.append((HEADER + 1 + _LINES * index, assumption.name, found))
+        shapes = shapes_of(simulation, assumption.name)
+        if shapes is not None:
+            drawn.append((HEADER + 1 + _LINES * index, assumption.name, shapes))
     if not drawn:
         return
     heads = [f"{name}, {which}" for _, name, _ in drawn for which in ("before", "accepted")]
-    bins = np.column_stack([shares for _, _, found in drawn for shares in (found.before, found.accepted)])
+    bins = np.column_stack([shares for _, _, result in drawn for shares in (result.before, result.accepted)])
     rows = [[Shown(share, SHARE) for share in row] for row in bins.tolist()]
     bottom = page.row
     table = curves.write(["Shapes of the assumptions' draws"], "Share of the draws in each bin", heads, rows)
@@ -158,15 +158,15 @@ def _write_assumption(page: Page, simulation: RunResult, assumption: Assumption)
 
 def _statistics(simulation: RunResult, assumption: Assumption) -> tuple[list[Shown], list[Shown], list[Shown]]:
     """Return the cells of the draws before filtering, of the accepted ones and of the change; or why there are none."""
-    rows, found = assumption_rows(simulation, assumption.name), filter_effect_of(simulation, assumption.name)
+    rows, effect = assumption_rows(simulation, assumption.name), filter_effect_of(simulation, assumption.name)
     second, last = _blank(_STATISTICS + 2, "second"), _blank(_STATISTICS + 2)
-    if found is None:
+    if effect is None:
         why = Shown(status(simulation.model, assumption.name, assumption.frozen))
         return [why, *_blank(_STATISTICS + 1)], second, last
     first, *others = (row_cells(row) for row in rows)
     if not others:
         return first, second, last
-    (shift, shift_error), (ratio, ratio_error) = (each.shown for each in assumption_change(found))
+    (shift, shift_error), (ratio, ratio_error) = (each.shown for each in assumption_change(effect))
     changes = [
         replace(shift, format=f'{shift.format}" SD"'),
         shift_error,

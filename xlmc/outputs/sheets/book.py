@@ -133,8 +133,8 @@ def _has_limits(run: Writing) -> bool:
     """Whether a limit could be moved."""
     if not _is_even(run):
         return False
-    found = run.dependence
-    return bool(found.filter_limits or found.varying_limits or found.omitted_limits)
+    result = run.dependence
+    return bool(result.filter_limits or result.varying_limits or result.omitted_limits)
 
 
 def _is_even(run: Writing) -> bool:

@@ -49,12 +49,12 @@ def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None
     name = simulation.model.workbook.name
     page.height = _ROW
     page.title("Certainty", f"{name}: {counted_text(simulation.accepted, 'accepted trial')}")
-    if said := statements(simulation):
+    if messages := statements(simulation):
         page.heading("In words")
-        for statement in said:
+        for statement in messages:
             page.wide(f"{statement.text}.", "quote", LAST)
         page.row += 1
-        page.wide(meaning(simulation.model.workbook, said), "remark", LAST)
+        page.wide(meaning(simulation.model.workbook, messages), "remark", LAST)
     page.heading("Certainty of ranges")
     write_blocks(page, certainty_blocks(simulation, simulation.results), last=LAST)
     _write_own_ranges(page, simulation, trials)
@@ -63,12 +63,12 @@ def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None
 
 def _write_own_ranges(page: Page, simulation: RunResult, trials: TrialsAt) -> None:
     """Write a line for each forecast that has a number on the sheet Trials; nothing where there is none."""
-    found = [
+    results = [
         (index, result, simulation.forecasts[name][: trials.shown])
         for index, (name, result) in enumerate(simulation.results.items())
     ]
-    found = [each for each in found if not np.isnan(each[2]).all() and each[1].kind not in NOT_ROUNDED]
-    if not found:
+    results = [each for each in results if not np.isnan(each[2]).all() and each[1].kind not in NOT_ROUNDED]
+    if not results:
         return
     from xlsxwriter.utility import xl_range_formula
 
@@ -77,7 +77,7 @@ def _write_own_ranges(page: Page, simulation: RunResult, trials: TrialsAt) -> No
     heads = ["Forecast", "Units", "From", "to", "Certainty", "Trials"]
     errors = simulation.plan.size == 0
     page.table([*heads[:5], "±", heads[5]] if errors else heads, [])
-    for index, result, values in found:
+    for index, result, values in results:
         _write_line(page, result, values, xl_range_formula(*trials.column(index)), errors)
 
 
@@ -88,11 +88,13 @@ def _instructions(simulation: RunResult, trials: TrialsAt) -> str:
         which = f"the first {count_text(trials.shown)} of {every}, which stand"
     else:
         which += ", which stand"
-    said = f"Type the ends of a range into the yellow cells; an empty cell means no limit. Formulas count {which} on "
-    said += "sheet Trials; both ends belong to the range."
+    message = (
+        f"Type the ends of a range into the yellow cells; an empty cell means no limit. Formulas count {which} on "
+    )
+    message += "sheet Trials; both ends belong to the range."
     if simulation.plan.size:
-        return f"{said} These trials depend on each other (see Sampling in the Record), so no error is given."
-    return said
+        return f"{message} These trials depend on each other (see Sampling in the Record), so no error is given."
+    return message
 
 
 def _write_line(page: Page, result: ForecastResult, values: NDArray[np.float64], column: str, errors: bool) -> None:

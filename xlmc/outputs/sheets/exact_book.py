@@ -88,12 +88,12 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
     def _bands(self) -> list[_Band]:
         """Return the rows of runs, cut where one begins or ends; where runs overlap, the later one counts."""
         cuts = sorted({edge for run in self._runs for edge in (run.row, run.end)})
-        found = []
+        bands = []
         for start, end in pairwise(cuts):
             runs = {run.column: run for run in self._runs if run.row <= start < run.end}
             if runs:
-                found.append(_Band(start, end, dict(sorted(runs.items()))))
-        return found
+                bands.append(_Band(start, end, dict(sorted(runs.items()))))
+        return bands
 
     def _write_rows(self) -> None:
         """Write the rows from the top down; result sheets have no comments, which would make rows, too."""
@@ -158,16 +158,16 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
 
     def _with_runs(self, top: int, left: int, bottom: int, right: int) -> dict[int, dict[int, Any]]:
         """Return the cells of these rows and columns; of wide sheets, charts read few."""
-        found: dict[int, dict[int, Any]] = {}
+        result: dict[int, dict[int, Any]] = {}
         for run in chain.from_iterable(self._in_column.get(column, ()) for column in range(left, right + 1)):
             start, end = max(top, run.row), min(bottom + 1, run.end)
             for row, number in enumerate(run.cells(start, end) if start < end else (), start):
-                found.setdefault(row, {})[run.column] = CellNumberTuple(number, run.style)
+                result.setdefault(row, {})[run.column] = CellNumberTuple(number, run.style)
         for row in range(top, bottom + 1):
             if (cells := self.table.get(row)) is not None:
                 own = {column: cells[column] for column in range(left, right + 1) if column in cells}
-                found[row] = found.get(row, {}) | own
-        return found
+                result[row] = result.get(row, {}) | own
+        return result
 
     def _write_cell(self, row: int, col: int, cell: Any) -> None:
         kind = type(cell)
@@ -189,11 +189,11 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
 
     def _find_spans(self, bands: Sequence[_Band]) -> None:
         """Find the first and last column of every 16 rows; result sheets have no comments, which would count, too."""
-        found: dict[int, tuple[int, int]] = {}
+        result: dict[int, tuple[int, int]] = {}
 
         def add(group: int, first: int, last: int) -> None:
-            low, high = found.get(group, (first, last))
-            found[group] = min(low, first), max(high, last)
+            low, high = result.get(group, (first, last))
+            result[group] = min(low, first), max(high, last)
 
         for row, cells in self.table.items():
             if cells:
@@ -202,7 +202,7 @@ class ExactSheet(Worksheet):  # type: ignore[misc]  # the library has no types
             first, last = min(band.runs), max(band.runs)
             for group in range(band.start // 16, (band.end - 1) // 16 + 1):
                 add(group, first, last)
-        self.row_spans = {group: f"{low + 1}:{high + 1}" for group, (low, high) in found.items()}
+        self.row_spans = {group: f"{low + 1}:{high + 1}" for group, (low, high) in result.items()}
 
 
 class ExactBook(Workbook):  # type: ignore[misc]  # the library has no types

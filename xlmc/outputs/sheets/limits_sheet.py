@@ -67,24 +67,24 @@ _LIMIT, _CHANGE, _OF_RANGE = 1, 4, 10
 """Columns of the long table."""
 
 
-def write_limits(page: Page, book: Workbook, found: Sensitivities, name: str) -> None:
+def write_limits(page: Page, book: Workbook, sensitivities: Sensitivities, name: str) -> None:
     """Write the sheet; its first charts draw the tables that stand below them, so room is left for them."""
     page.title("Filter limits: how the answers move as each limit moves", name)
-    for sentence in (*limit_sentences(found), f"{_MOVED} {_PRINTED}"):
+    for sentence in (*limit_sentences(sensitivities), f"{_MOVED} {_PRINTED}"):
         page.wide(sentence, "remark", CHARTED)
-    forecasts = {each.forecast: each for each in found.forecasts}
+    forecasts = {each.forecast: each for each in sensitivities.forecasts}
     page.row += 1
-    for limit in found.filter_limits:
+    for limit in sensitivities.filter_limits:
         if limit.points and nothing_moves(limit):
             page.wide(_brief(limit), "remark", CHARTED)
-    drawn = [limit for limit in found.filter_limits if limit.points and not nothing_moves(limit)]
+    drawn = [limit for limit in sensitivities.filter_limits if limit.points and not nothing_moves(limit)]
     top = page.row
     for _ in range(0, len(drawn), 2):
         page.may_begin()
         page.row += _FIRST_ROWS + 1
     printed = page.row
     charts: list[Captioned] = []
-    for limit in found.filter_limits:
+    for limit in sensitivities.filter_limits:
         charts += _write_limit(page, book, limit, forecasts)
     page.row = top
     place_rows(page, charts, _FIRST_ROWS, [_brief(limit) for limit in drawn])

@@ -120,8 +120,8 @@ def _bars(book: Workbook, chart: Chart, shown: Bars, at: Sequence[SeriesAt]) -> 
 
 def _looks(shown: Bars) -> list[str]:
     """Return the looks of pieces in their order."""
-    found = [look for look, _ in shown.looks] or [look for bar in shown.bars for _, _, look in bar.pieces]
-    return [*dict.fromkeys(found)] or ["dark"]
+    result = [look for look, _ in shown.looks] or [look for bar in shown.bars for _, _, look in bar.pieces]
+    return [*dict.fromkeys(result)] or ["dark"]
 
 
 def _lines(book: Workbook, chart: Chart, shown: Lines, at: Sequence[SeriesAt]) -> ExcelChart:
@@ -214,8 +214,8 @@ def _write_bars(page: Page, across: str, shown: Bars) -> list[SeriesAt]:
     looks = _looks(shown) if any(len(bar.pieces) > 1 for bar in shown.bars) else [""]
     rows: list[list[str | float | None]] = []
     for bar in shown.bars:
-        found = {look if looks[0] else "": end for _, end, look in bar.pieces}
-        rows.append([bar.name, *(found.get(look, 0.0) for look in looks)])
+        result = {look if looks[0] else "": end for _, end, look in bar.pieces}
+        rows.append([bar.name, *(result.get(look, 0.0) for look in looks)])
     whiskers = [bar.whisker for bar in shown.bars]
     has_errors = len(looks) == 1 and any(whiskers)
     if has_errors:
@@ -241,8 +241,8 @@ def _write_line(page: Page, shown: Lines, line: Line) -> SeriesAt:
     formats = [spread_format(max(places) - min(places), shown.form_across), number, *[number] * has_errors]
     heads = [line.name, shown.upwards, *["±"] * has_errors]
     columns = zip(places, values, errors, strict=True)
-    found = _write_columns(page, heads, [row[: len(heads)] for row in columns], formats)
-    return SeriesAt(found[0][0], found[0][1], found[1][1], found[2][1] if has_errors else None)
+    result = _write_columns(page, heads, [row[: len(heads)] for row in columns], formats)
+    return SeriesAt(result[0][0], result[0][1], result[1][1], result[2][1] if has_errors else None)
 
 
 def _write_columns(

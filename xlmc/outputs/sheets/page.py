@@ -223,11 +223,11 @@ class Page:
         heights = [_POINTS * self.sheet._size_row(row) for row in range(rows)]
         repeated = 0.0 if repeat is None else heights[repeat]
         end = rows if printed is None else printed
-        found = lay_out(width, heights[:end], self._begins, repeated, whole=printed is None)
-        if not found.upright:
+        layout = lay_out(width, heights[:end], self._begins, repeated, whole=printed is None)
+        if not layout.upright:
             self.sheet.set_landscape()
-        self.sheet.fit_to_pages(1, 1 if found.whole else 0)
-        breaks = list(found.breaks)
+        self.sheet.fit_to_pages(1, 1 if layout.whole else 0)
+        breaks = list(layout.breaks)
         if printed is not None:
             begins = [row - end for row in self._begins]
             breaks += [end, *(end + row for row in lay_out(width, heights[end:], begins, repeated, whole=False).breaks)]

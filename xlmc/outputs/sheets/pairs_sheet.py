@@ -91,12 +91,12 @@ def _drawings(
     known = _trials_with_numbers([simulation.forecasts[each.name] for each in forecasts])
     if not known.size:
         return []
-    found = {each.name: _points(curves, simulation, trials, each, known) for each in forecasts}
+    result = {each.name: _points(curves, simulation, trials, each, known) for each in forecasts}
     titles = [f"{pair.first.name} and {pair.second.name}" for pair in pairs]
     points = f"the first {count_text(known.size)} accepted trials in which all of these forecasts are numbers"
     return [
         Drawing(
-            _scatter(book, title, found[pair.first.name], found[pair.second.name]),
+            _scatter(book, title, result[pair.first.name], result[pair.second.name]),
             f"Scatter chart {number}. {title}: {points}.",
         )
         for number, (title, pair) in enumerate(zip(titles, pairs, strict=True), 1)

@@ -64,14 +64,14 @@ def lay_out(
         repeated: the height of the rows that stand on top of each further page.
         whole: whether it may be fitted to the height of one page.
     """
-    found = [
+    layouts = [
         _on(page, width, heights, begins, repeated, upright=upright, whole=whole)
         for page, upright in ((_UPRIGHT, True), (_ACROSS, False))
     ]
-    readable = [each for each in found if each.scale >= SMALLEST]
+    readable = [each for each in layouts if each.scale >= SMALLEST]
     if readable:
         return min(readable, key=lambda each: (each.pages, -each.scale))
-    return max(found, key=lambda each: each.scale)
+    return max(layouts, key=lambda each: each.scale)
 
 
 def _on(

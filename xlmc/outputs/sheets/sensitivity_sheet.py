@@ -79,28 +79,34 @@ _CHANGES: Final = 5
 """The column of the first of the five changes."""
 
 
-def write_sensitivity(page: Page, book: Workbook, found: Sensitivities, source: SourceBook) -> None:
+def write_sensitivity(page: Page, book: Workbook, sensitivities: Sensitivities, source: SourceBook) -> None:
     """Write the sheet: two charts of each forecast, which are printed; below all of them its others and its tables.
 
     The charts draw the tables that stand below them, so room is left for them.
     """
     page.title(
-        "Sensitivity: what the answers depend on", f"{source.name}: {counted_text(found.accepted, 'accepted trial')}"
+        "Sensitivity: what the answers depend on",
+        f"{source.name}: {counted_text(sensitivities.accepted, 'accepted trial')}",
     )
-    bent = f" {BENT}" if any(map(is_bent, found.forecasts)) else ""
-    printed_only = _printed_sentence(len(found.forecasts))
-    for sentence in (*sensitivity_sentences(found, source), EXPLAINED_CHART, f"{TORNADO_CHART}{bent}", printed_only):
+    bent = f" {BENT}" if any(map(is_bent, sensitivities.forecasts)) else ""
+    printed_only = _printed_sentence(len(sensitivities.forecasts))
+    for sentence in (
+        *sensitivity_sentences(sensitivities, source),
+        EXPLAINED_CHART,
+        f"{TORNADO_CHART}{bent}",
+        printed_only,
+    ):
         page.wide(sentence, "remark", CHARTED)
     tops = []
-    for forecast in found.forecasts:
+    for forecast in sensitivities.forecasts:
         tops.append(page.row)
         _write_heading(page, forecast)
         page.row += _FIRST_ROWS + 1 if _is_drawn(forecast) else 0
     printed = [*tops, page.row][min(len(tops), _PRINTED)]
-    for top, forecast in zip(tops, found.forecasts, strict=True):
+    for top, forecast in zip(tops, sensitivities.forecasts, strict=True):
         if not _is_drawn(forecast):
             continue
-        charts = _write_details(page, book, forecast, found)
+        charts = _write_details(page, book, forecast, sensitivities)
         bottom, page.row = page.row, top + _HEADING
         place_rows(page, charts, _FIRST_ROWS, _brief(forecast))
         page.row = bottom
@@ -126,11 +132,11 @@ def _is_drawn(forecast: ForecastSensitivity) -> bool:
 
 
 def _write_details(
-    page: Page, book: Workbook, forecast: ForecastSensitivity, found: Sensitivities
+    page: Page, book: Workbook, forecast: ForecastSensitivity, sensitivities: Sensitivities
 ) -> Sequence[Captioned]:
     """Write the further charts and the tables of a forecast; the first two charts are returned, for the top."""
     page.heading(f"{forecast.forecast}: all numbers")
-    top, sobol = page.row, found.sobol_trials > 0
+    top, sobol = page.row, sensitivities.sobol_trials > 0
     count = (4 if forecast.influences else 0) + (2 if forecast.bars else 0)
     page.row += (count // 2 - 1) * (CHART_ROWS + 1)
     influences: Sequence[Captioned] = ()
@@ -138,7 +144,7 @@ def _write_details(
     if forecast.influences:
         at = _write_table(page, influence_table(forecast, sobol))
         bars = _influence_charts(book, at, forecast, sobol)
-        influences = list(zip(bars, influence_captions(forecast, found.sobol_trials), strict=True))
+        influences = list(zip(bars, influence_captions(forecast, sensitivities.sobol_trials), strict=True))
         _write_rest(page, len(forecast.influences))
     else:
         page.wide(_nothing(forecast), "paragraph", _LAST)
@@ -184,18 +190,18 @@ def _write_rest(page: Page, count: int) -> None:
         page.wide(f"and {count_text(count - ROWS)} more that explain less.", "remark", _LAST)
 
 
-def _influence_charts(book: Workbook, at: TableAt, found: ForecastSensitivity, sobol: bool) -> list[ExcelChart]:
+def _influence_charts(book: Workbook, at: TableAt, sensitivity: ForecastSensitivity, sobol: bool) -> list[ExcelChart]:
     columns = (_EXPLAINED, _TOTAL if sobol else _DEPENDENCE, _RANK, _CONTRIBUTION)
-    charts = influence_charts(found, _DRAWN, sobol=sobol)
+    charts = influence_charts(sensitivity, _DRAWN, sobol=sobol)
     return [
         native_chart(book, chart, [at.series(column, column + 1)])
         for chart, column in zip(charts, columns, strict=True)
     ]
 
 
-def _move_charts(book: Workbook, at: TableAt, found: ForecastSensitivity) -> list[ExcelChart]:
-    tornado, first, last = tornado_chart(found, _DRAWN), _CHANGES, _CHANGES + 4
-    number = "General" if found.form == PLAIN else change_format(found)
+def _move_charts(book: Workbook, at: TableAt, sensitivity: ForecastSensitivity) -> list[ExcelChart]:
+    tornado, first, last = tornado_chart(sensitivity, _DRAWN), _CHANGES, _CHANGES + 4
+    number = "General" if sensitivity.form == PLAIN else change_format(sensitivity)
     return [
         native_chart(book, tornado, [at.series(first), at.series(last)]),
         spider_chart(book, at, "Spider", tornado.across, first, last, number),

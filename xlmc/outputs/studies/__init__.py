@@ -33,40 +33,40 @@ _COMMANDS: Final = {
 class StudyDocuments:
     """Shows what studies found, in the words of their commands."""
 
-    def text(self, found: Shown) -> str:
+    def text(self, shown: Shown) -> str:
         """Return the title and the sentences, without tables."""
         from xlmc.outputs.document.parts import Bullets, Paragraph
 
-        with in_style(_style(found)):
-            report = _report(found)
+        with in_style(_style(shown)):
+            report = _report(shown)
             end = "" if report.title.endswith(("?", "!", ".")) else "."
-            said = [f"{report.title}{end} {report.below}."]
+            messages = [f"{report.title}{end} {report.below}."]
             for block in report.blocks:
                 if isinstance(block, Paragraph):
-                    said.append(block.text)
+                    messages.append(block.text)
                 elif isinstance(block, Bullets):
-                    said += [f"- {each}" for each in block.texts]
-            return "\n".join(said)
+                    messages += [f"- {each}" for each in block.texts]
+            return "\n".join(messages)
 
-    def html(self, found: Shown) -> str:
+    def html(self, shown: Shown) -> str:
         """Return the blocks of the study's page, in the colours of the notebook."""
         from xlmc.outputs.document.html_writer import blocks_html
 
-        with in_style(_style(found)):
-            report = _report(found)
+        with in_style(_style(shown)):
+            report = _report(shown)
             above = f"<h3>{escape(report.title)}</h3><p>{escape(report.below)}</p>"
             return f"{above}{blocks_html(report.blocks).source}"
 
-    def save(self, found: Shown, path: Path, *, overwrite: bool) -> Path:
+    def save(self, shown: Shown, path: Path, *, overwrite: bool) -> Path:
         """Write the report; `Shown.save` says what that may raise."""
         from xlmc.outputs.study_report import TWO_LOOPS_NOT_KEPT, Files
 
-        with in_style(_style(found)):
-            report = _report(found)
+        with in_style(_style(shown)):
+            report = _report(shown)
             in_loops = report.run is not None and bool(report.run.plan.outer)
             files = Files(
                 [path],
-                _sources(found),
+                _sources(shown),
                 overwrite=overwrite,
                 of_run=report.run is not None,
                 not_kept=TWO_LOOPS_NOT_KEPT if in_loops else "",
@@ -77,27 +77,27 @@ class StudyDocuments:
         return path
 
 
-def _report(found: Shown) -> StudyReport:
-    command = _COMMANDS[type(found).__name__]
+def _report(shown: Shown) -> StudyReport:
+    command = _COMMANDS[type(shown).__name__]
     module = import_module(f"xlmc.outputs.studies.{command}")
-    return cast("StudyReport", getattr(module, f"{command}_report")(found))
+    return cast("StudyReport", getattr(module, f"{command}_report")(shown))
 
 
-def _models(found: Any) -> list[CompiledModel]:
-    if hasattr(found, "first"):
-        return [found.first.model, found.second.model]
-    return [found.model if hasattr(found, "model") else found.run.model]
+def _models(value: Any) -> list[CompiledModel]:
+    if hasattr(value, "first"):
+        return [value.first.model, value.second.model]
+    return [value.model if hasattr(value, "model") else value.run.model]
 
 
-def _sources(found: Any) -> list[Path]:
+def _sources(value: Any) -> list[Path]:
     """Return the workbooks that were studied."""
-    if hasattr(found, "workbook"):
-        return [Path(found.workbook.name)]
-    return [each.path for each in _models(found)]
+    if hasattr(value, "workbook"):
+        return [Path(value.workbook.name)]
+    return [each.path for each in _models(value)]
 
 
-def _style(found: Any) -> str:
+def _style(value: Any) -> str:
     """Return how the workbook that was studied wants numbers written."""
-    if hasattr(found, "number_style"):
-        return str(found.number_style)
-    return _models(found)[0].definitions.settings.number_style
+    if hasattr(value, "number_style"):
+        return str(value.number_style)
+    return _models(value)[0].definitions.settings.number_style

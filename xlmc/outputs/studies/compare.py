@@ -17,39 +17,41 @@ from xlmc.analysis.studies.steps import ended_early
 __all__ = ["compare_report"]
 
 
-def compare_report(found: Comparison) -> StudyReport:
+def compare_report(comparison: Comparison) -> StudyReport:
     """Make the report."""
     from xlmc.analysis.studies.comparison.verdicts import book_names, verdict_text
     from xlmc.montecarlo.definitions.vocabulary import vocabulary_of
     from xlmc.outputs.document.parts import Table, blocks_of
     from xlmc.outputs.study_report import StudyReport
 
-    books, words = book_names(found), vocabulary_of(found.first.model.workbook)
+    books, words = book_names(comparison), vocabulary_of(comparison.first.model.workbook)
     headings = ("", "First", "Second", "Difference", "Tolerance")
-    tables = [Table(_title(each), headings, tuple(_rows(each)), (1, 2, 3, 4)) for each in found.forecasts]
-    blocks = blocks_of([*verdict_text(found), *tables, *_sentences(found), words.fill(_MEANING)])
+    tables = [Table(_title(each), headings, tuple(_rows(each)), (1, 2, 3, 4)) for each in comparison.forecasts]
+    blocks = blocks_of([*verdict_text(comparison), *tables, *_sentences(comparison), words.fill(_MEANING)])
     title, below = "Do two models give the same answer?", f"{books[0]} (first) and {books[1]} (second)"
-    return StudyReport(title, below, blocks, "Comparison", partial(_as_json, found))
+    return StudyReport(title, below, blocks, "Comparison", partial(_as_json, comparison))
 
 
-def _sentences(found: Comparison) -> Iterator[str]:
+def _sentences(comparison: Comparison) -> Iterator[str]:
     from xlmc.analysis.studies.comparison.verdicts import book_names, inputs_text
     from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.summary import share_text
 
-    books, accepted, trials = book_names(found), found.acceptance, found.first.trials
-    if found.ended:
-        yield ended_early("search for causes", found.ended, "Where no cause is named, none was looked for to the end.")
+    books, accepted, trials = book_names(comparison), comparison.acceptance, comparison.first.trials
+    if comparison.ended:
+        yield ended_early(
+            "search for causes", comparison.ended, "Where no cause is named, none was looked for to the end."
+        )
     yield (
         f"Of {count_text(trials)} trials both accept {count_text(accepted.both)}; {books[0]} alone "
         f"{count_text(accepted.first_only)}, "
-        f"{books[1]} alone {count_text(accepted.second_only)}; seed {found.first.settings.seed}."
+        f"{books[1]} alone {count_text(accepted.second_only)}; seed {comparison.first.settings.seed}."
     )
-    if not (found.first.model.filters or found.second.model.filters):
+    if not (comparison.first.model.filters or comparison.second.model.filters):
         yield "Neither book has filters: every trial is accepted."
     elif accepted.both and not accepted.first_only + accepted.second_only:
         yield f"The acceptance is the same in both: {share_text(accepted.first)}."
-    yield from inputs_text(found)
+    yield from inputs_text(comparison)
 
 
 _MEANING = (
@@ -71,10 +73,10 @@ def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
     from xlmc.montecarlo.number_text import number_text, percent
     from xlmc.outputs.summary import estimate_text
 
-    found, form = each.difference, each.difference.form
+    result, form = each.difference, each.difference.form
     rows = []
-    for number, change in found.changes:
-        label = f"{percent(found.share)} range, {number}" if number.endswith("end") else number
+    for number, change in result.changes:
+        label = f"{percent(result.share)} range, {number}" if number.endswith("end") else number
         both, apart = (change.first, change.second), change.difference
         if is_chance(number):
             values = [amount(number, one, form).removesuffix(" points") for one in (*both, apart)]
@@ -83,25 +85,25 @@ def _rows(each: ForecastComparison) -> list[tuple[str, ...]]:
             written = form.spread if number == "SD" else form.estimate
             difference = "" if isnan(apart.value) else form.spread(apart)
             rows.append((label, *map(written, both), difference, tolerance_text(each.tolerance, form)))
-    if not found.shares:
-        rows.append(("percentiles, on average", "", "", form.spread(found.wasserstein), ""))
-        rows.append(("cumulative curves, at most", "", "", estimate_text(found.kolmogorov), ""))
+    if not result.shares:
+        rows.append(("percentiles, on average", "", "", form.spread(result.wasserstein), ""))
+        rows.append(("cumulative curves, at most", "", "", estimate_text(result.kolmogorov), ""))
     return rows
 
 
-def _as_json(found: Comparison) -> dict[str, object]:
+def _as_json(comparison: Comparison) -> dict[str, object]:
     from xlmc.analysis.studies.comparison.verdicts import book_names, verdict_text
     from xlmc.outputs.studies.json_numbers import acceptance_json
 
-    books, inputs = book_names(found), found.inputs
+    books, inputs = book_names(comparison), comparison.inputs
     return {
         "books": books,
-        "ended_early": found.ended or None,
-        "fed_by": None if found.source is None else found.source.model.path.name,
-        "simpler": None if found.simpler is None else books[found.simpler],
-        "trials": found.first.trials,
-        "seed": found.first.settings.seed,
-        "acceptance": acceptance_json(found.acceptance),
+        "ended_early": comparison.ended or None,
+        "fed_by": None if comparison.source is None else comparison.source.model.path.name,
+        "simpler": None if comparison.simpler is None else books[comparison.simpler],
+        "trials": comparison.first.trials,
+        "seed": comparison.first.settings.seed,
+        "acceptance": acceptance_json(comparison.acceptance),
         "assumptions": {
             "alike": inputs.alike,
             "unlike": [
@@ -111,11 +113,11 @@ def _as_json(found: Comparison) -> dict[str, object]:
             "drawn_only_in": dict(zip(books, inputs.drawn, strict=True)),
         },
         "filters_only_in": dict(zip(books, inputs.filters, strict=True)),
-        "forecasts_only_in": dict(zip(books, found.unpaired, strict=True)),
-        "forecasts": [_entry(each, books) for each in found.forecasts],
-        "verdict": verdict_text(found),
-        "trials_needed": found.trials_needed,
-        "runs": found.runs,
+        "forecasts_only_in": dict(zip(books, comparison.unpaired, strict=True)),
+        "forecasts": [_entry(each, books) for each in comparison.forecasts],
+        "verdict": verdict_text(comparison),
+        "trials_needed": comparison.trials_needed,
+        "runs": comparison.runs,
     }
 
 

@@ -19,21 +19,21 @@ _MOST_LINES = 6
 _MOST_NAMED = 4
 
 
-def decide_report(found: Decided) -> StudyReport:
+def decide_report(result: Decided) -> StudyReport:
     """Make the report."""
     from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
-    run, count = found.run, len(found.combinations) + len(found.impossible)
+    run, count = result.run, len(result.combinations) + len(result.impossible)
     below = (
         f"{run.model.workbook.name}: {count_text(count)} combination{'s' * (count != 1)} of "
-        f"{', '.join(each.name for each in found.decisions)}, {count_text(run.trials)} trials each, "
+        f"{', '.join(each.name for each in result.decisions)}, {count_text(run.trials)} trials each, "
         f"seed {run.settings.seed}"
     )
-    blocks = blocks_of([*_sentences(found), *_blocks(found), _MEANING])
+    blocks = blocks_of([*_sentences(result), *_blocks(result), _MEANING])
     title = "What each decision gives"
-    return StudyReport(title, below, blocks, "Decisions", partial(_as_json, found), run)
+    return StudyReport(title, below, blocks, "Decisions", partial(_as_json, result), run)
 
 
 _MEANING = (
@@ -43,23 +43,23 @@ _MEANING = (
 )
 
 
-def _sentences(found: Decided) -> Iterator[str]:
+def _sentences(result: Decided) -> Iterator[str]:
     from xlmc.analysis.studies.decisions import of_forecast
     from xlmc.analysis.studies.steps import ended_early
 
-    names = " and ".join(each.name for each in found.decisions)
-    same = [each.name for each in found.run.model.forecasts if not found.does_matter(each.name)]
-    for forecast in found.run.model.forecasts:
+    names = " and ".join(each.name for each in result.decisions)
+    same = [each.name for each in result.run.model.forecasts if not result.does_matter(each.name)]
+    for forecast in result.run.model.forecasts:
         if forecast.name in same:
             continue
-        losing = found.losing(forecast.name)
+        losing = result.losing(forecast.name)
         for least, word in ((False, "largest"), (True, "smallest")):
-            best = found.best(forecast.name, least=least)
+            best = result.best(forecast.name, least=least)
             if best is None:
                 if not losing:
                     yield f"{forecast.name} is a number with none of them."
                 break
-            answer = of_forecast(found.base, forecast.name)
+            answer = of_forecast(result.base, forecast.name)
             share = "probability" if answer.text is None else f"share of “{answer.text}”"
             form, what = answer.form, "mean" if answer.has_range else share
             units = f" {forecast.units}" if forecast.units and answer.has_range else ""
@@ -77,12 +77,12 @@ def _sentences(found: Decided) -> Iterator[str]:
             yield f"{text}; that is {ahead} {side} the next, {best.next.answers.name}{doubt}."
         if losing:
             yield _losing_text(losing, forecast.name)
-    if found.ended:
-        yield ended_early("table", found.ended, "Combinations that are not in it were not run.")
-    if same and not (found.impossible or found.ended):
-        are = "are" if len(found.decisions) > 1 else "is"
+    if result.ended:
+        yield ended_early("table", result.ended, "Combinations that are not in it were not run.")
+    if same and not (result.impossible or result.ended):
+        are = "are" if len(result.decisions) > 1 else "is"
         yield f"Whatever {names} {are}, these stay as they are: {'; '.join(same)}."
-    elif same and len(found.combinations) > 1:
+    elif same and len(result.combinations) > 1:
         yield f"In the combinations that were run these stay as they are: {'; '.join(same)}."
 
 
@@ -103,40 +103,40 @@ def _losing_text(losing: Sequence[Combination], forecast: str) -> str:
     )
 
 
-def _blocks(found: Decided) -> Iterator[Block]:
-    for index, answer in enumerate(found.base.forecasts):
-        if not found.does_matter(answer.forecast.name):
+def _blocks(result: Decided) -> Iterator[Block]:
+    for index, answer in enumerate(result.base.forecasts):
+        if not result.does_matter(answer.forecast.name):
             continue
-        yield _table(found, index)
-        if len(found.decisions) < 3:
-            figure = _trend(found, index)
+        yield _table(result, index)
+        if len(result.decisions) < 3:
+            figure = _trend(result, index)
             if figure is not None:
                 yield figure
 
 
-def _table(found: Decided, index: int) -> Table:
+def _table(result: Decided, index: int) -> Table:
     from xlmc.outputs.document.content.scenarios import answer_heads, answer_rows
     from xlmc.outputs.document.parts import Table
 
-    answers = [found.base, *(each.answers for each in found.combinations)]
-    decisions = [", ".join(filter(None, (each.name, each.units))) for each in found.decisions]
-    values = [(found.base.name, *[""] * (len(decisions) - 1))]
+    answers = [result.base, *(each.answers for each in result.combinations)]
+    decisions = [", ".join(filter(None, (each.name, each.units))) for each in result.decisions]
+    values = [(result.base.name, *[""] * (len(decisions) - 1))]
     values += [
-        tuple(one.shown(at) for one, at in zip(found.decisions, each.values, strict=True))
-        for each in found.combinations
+        tuple(one.shown(at) for one, at in zip(result.decisions, each.values, strict=True))
+        for each in result.combinations
     ]
     heads = (*decisions, *answer_heads(answers, index)[1:])
     rows = tuple((*at, *row[1:]) for at, row in zip(values, answer_rows(answers, index), strict=True))
     return Table(answers[0].forecasts[index].title, heads, rows, tuple(range(len(heads))))
 
 
-def _trend(found: Decided, index: int) -> Figure | None:
+def _trend(result: Decided, index: int) -> Figure | None:
     """Draw the means over the values of the first decision: of two a line for each value of the second."""
     from xlmc.outputs.document.parts import Chart, Figure, Line, Lines
 
-    first, *others = found.decisions
-    answer = found.base.forecasts[index]
-    points = [(each.values, each.answers.forecasts[index]) for each in found.combinations]
+    first, *others = result.decisions
+    answer = result.base.forecasts[index]
+    points = [(each.values, each.answers.forecasts[index]) for each in result.combinations]
     if len(first.values) < 2 or len(points) < 2 or first.contents:
         return None
     if others:
@@ -163,14 +163,14 @@ def _trend(found: Decided, index: int) -> Figure | None:
         return None
     data = Lines(drawn, answer.title, dots=True, form_upwards=answer.form)
     across = f"{first.name}, {first.units}" if first.units else first.name
-    said = f"{answer.forecast.name} for the values of {' and '.join(each.name for each in found.decisions)}"
-    return Figure(Chart("", across, data, said), said)
+    message = f"{answer.forecast.name} for the values of {' and '.join(each.name for each in result.decisions)}"
+    return Figure(Chart("", across, data, message), message)
 
 
-def _as_json(found: Decided) -> dict[str, object]:
+def _as_json(result: Decided) -> dict[str, object]:
     from xlmc.outputs.json_document import scenario_json
 
-    run = found.run
+    run = result.run
     return {
         "book": str(run.model.path),
         "trials": run.trials,
@@ -182,17 +182,17 @@ def _as_json(found: Decided) -> dict[str, object]:
                 "units": each.units,
                 "values": _contents([each] * len(each.values), each.values),
             }
-            for each in found.decisions
+            for each in result.decisions
         ],
-        "as_it_is": scenario_json(found.base),
+        "as_it_is": scenario_json(result.base),
         "combinations": [
-            {"values": _contents(found.decisions, each.values), **scenario_json(each.answers)}
-            for each in found.combinations
+            {"values": _contents(result.decisions, each.values), **scenario_json(each.answers)}
+            for each in result.combinations
         ],
-        "best": [_best_json(found, each.name) for each in run.model.forecasts],
-        "ended_early": found.ended or None,
+        "best": [_best_json(result, each.name) for each in run.model.forecasts],
+        "ended_early": result.ended or None,
         "impossible": [
-            {"values": _contents(found.decisions, values), "why": why} for values, why in found.impossible.items()
+            {"values": _contents(result.decisions, values), "why": why} for values, why in result.impossible.items()
         ],
     }
 
@@ -202,22 +202,22 @@ def _contents(decisions: Sequence[Decision], values: Sequence[float]) -> list[fl
     return [each.content(value) for each, value in zip(decisions, values, strict=True)]
 
 
-def _best_json(found: Decided, forecast: str) -> dict[str, object]:
+def _best_json(result: Decided, forecast: str) -> dict[str, object]:
     """Return the combinations with the largest and the smallest mean of a forecast, and how far the next one lies."""
     from xlmc.outputs.studies.json_numbers import estimate_json
 
-    told: dict[str, object] = {"forecast": forecast}
+    messages: dict[str, object] = {"forecast": forecast}
     for name, least in (("largest", False), ("smallest", True)):
-        best = found.best(forecast, least=least)
-        told[name] = best and {
-            "values": _contents(found.decisions, best.combination.values),
+        best = result.best(forecast, least=least)
+        messages[name] = best and {
+            "values": _contents(result.decisions, best.combination.values),
             "mean": estimate_json(best.mean),
-            "next": best.next and _contents(found.decisions, best.next.values),
+            "next": best.next and _contents(result.decisions, best.next.values),
             "ahead": best.ahead and estimate_json(best.ahead),
             "is_sure": best.is_sure,
         }
-    told["losing_trials"] = [
-        {"values": _contents(found.decisions, each.values), "lost": each.answers.run.lost_share(forecast)}
-        for each in found.losing(forecast)
+    messages["losing_trials"] = [
+        {"values": _contents(result.decisions, each.values), "lost": each.answers.run.lost_share(forecast)}
+        for each in result.losing(forecast)
     ]
-    return told
+    return messages

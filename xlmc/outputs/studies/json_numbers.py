@@ -20,21 +20,27 @@ def estimate_json(estimate: Estimate) -> dict[str, float | None]:
     return {name: finite(number) for name, number in numbers.items()}
 
 
-def difference_json(found: Difference) -> dict[str, object]:
+def difference_json(difference: Difference) -> dict[str, object]:
     """Return the four numbers of a forecast in two runs, and the distances; of texts their shares."""
     from xlmc.montecarlo.statistics.estimate import finite
 
-    shares = {"shares": {label: _change(each) for label, each in found.shares.items()}} if found.shares else {}
+    shares = (
+        {"shares": {label: _change(each) for label, each in difference.shares.items()}} if difference.shares else {}
+    )
     return {
         **shares,
-        "mean": _change(found.mean),
-        "standard_deviation": _change(found.standard_deviation),
-        "central_range": {"share": found.share, "low": _change(found.low), "high": _change(found.high)},
-        **({} if found.above is None else {"above_threshold": {"threshold": found.threshold, **_change(found.above)}}),
-        "kolmogorov": estimate_json(found.kolmogorov),
-        "wasserstein_1": estimate_json(found.wasserstein),
-        "largest_in_one_trial": finite(found.largest),
-        "root_mean_square_in_one_trial": finite(found.typical),
+        "mean": _change(difference.mean),
+        "standard_deviation": _change(difference.standard_deviation),
+        "central_range": {"share": difference.share, "low": _change(difference.low), "high": _change(difference.high)},
+        **(
+            {}
+            if difference.above is None
+            else {"above_threshold": {"threshold": difference.threshold, **_change(difference.above)}}
+        ),
+        "kolmogorov": estimate_json(difference.kolmogorov),
+        "wasserstein_1": estimate_json(difference.wasserstein),
+        "largest_in_one_trial": finite(difference.largest),
+        "root_mean_square_in_one_trial": finite(difference.typical),
     }
 
 
@@ -46,13 +52,13 @@ def _change(change: Change) -> dict[str, object]:
     }
 
 
-def acceptance_json(found: Acceptance) -> dict[str, object]:
+def acceptance_json(acceptance: Acceptance) -> dict[str, object]:
     """How many trials both accept, and each alone."""
     return {
-        "both": found.both,
-        "first_only": found.first_only,
-        "second_only": found.second_only,
-        "first": estimate_json(found.first),
-        "second": estimate_json(found.second),
-        "relative_change": estimate_json(found.relative),
+        "both": acceptance.both,
+        "first_only": acceptance.first_only,
+        "second_only": acceptance.second_only,
+        "first": estimate_json(acceptance.first),
+        "second": estimate_json(acceptance.second),
+        "relative_change": estimate_json(acceptance.relative),
     }

@@ -9,6 +9,6 @@ from xlmc.outputs.study_report import StudyReport
 __all__ = ["methods_report"]
 
 
-def methods_report(found: Study) -> StudyReport:
+def methods_report(study: Study) -> StudyReport:
     """Return the report without the figures that matplotlib draws."""
-    return with_figures(found, figures=False)
+    return with_figures(study, figures=False)

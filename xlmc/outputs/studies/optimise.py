@@ -15,35 +15,35 @@ if TYPE_CHECKING:
 __all__ = ["optimise_report"]
 
 
-def optimise_report(found: Optimised, again: str = "") -> StudyReport:
+def optimise_report(result: Optimised, again: str = "") -> StudyReport:
     """Make the report.
 
     Args:
-        found: what was found.
+        result: what was found.
         again: the command that gives the same again; none where no command was typed.
     """
     from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import Code, Paragraph, blocks_of
     from xlmc.outputs.study_report import StudyReport
 
-    run = found.run
-    named = ", ".join(each.name for each in found.decisions)
+    run = result.run
+    named = ", ".join(each.name for each in result.decisions)
     below = (
-        f"{run.model.workbook.name}: {count_text(found.tried)} candidate{'s' * (found.tried != 1)} for {named}, "
-        f"{count_text(found.trials)} trials in all; {count_text(run.trials)} fresh ones of the best, "
+        f"{run.model.workbook.name}: {count_text(result.tried)} candidate{'s' * (result.tried != 1)} for {named}, "
+        f"{count_text(result.trials)} trials in all; {count_text(run.trials)} fresh ones of the best, "
         f"seed {run.settings.seed}"
     )
     repeated: list[Block] = [Paragraph("To repeat it:", "small"), Code(again)] if again else []
-    blocks = [*_sentences(found), *_blocks(found), _meaning(found), *repeated]
-    title = f"The {found.goal.words}"
+    blocks = [*_sentences(result), *_blocks(result), _meaning(result), *repeated]
+    title = f"The {result.goal.words}"
     kept = None if run.model.definitions.feeding is not None else run  # no file holds fed books with these decisions
-    return StudyReport(title, below, blocks_of(blocks), "Optimum", partial(_as_json, found, again), kept)
+    return StudyReport(title, below, blocks_of(blocks), "Optimum", partial(_as_json, result, again), kept)
 
 
-def _with_values(found: Optimised, values: tuple[float, ...]) -> str:
+def _with_values(result: Optimised, values: tuple[float, ...]) -> str:
     from xlmc.analysis.studies.decisions import values_text
 
-    return values_text(found.decisions, values)
+    return values_text(result.decisions, values)
 
 
 def _percent(share: float) -> str:
@@ -59,120 +59,122 @@ def _percent(share: float) -> str:
     return f"{number_text(int(share * 1000.0) / 10.0)} %"
 
 
-def _small(found: Optimised) -> str:
+def _small(result: Optimised) -> str:
     from xlmc.montecarlo.number_text import number_text
 
-    measure = found.goal.measure
+    measure = result.goal.measure
     if measure.form.factor != 1.0:
-        points = number_text(found.indifference * measure.form.factor)
+        points = number_text(result.indifference * measure.form.factor)
         return f"{points} percentage point{'s' * (points != '1')}"
-    text = measure.form.width(found.indifference)
+    text = measure.form.width(result.indifference)
     return f"{text} {measure.units}" if measure.units else text
 
 
-def _sentences(found: Optimised) -> Iterator[str]:
+def _sentences(result: Optimised) -> Iterator[str]:
     from xlmc.montecarlo.number_text import count_text
 
-    measure = found.goal.measure
-    extreme = "largest" if found.goal.maximise else "smallest"
-    best = _with_values(found, found.best)
-    if math.isnan(found.found.value):
-        of = f"none of the {count_text(found.tried)} candidates" if found.tried > 1 else "the only candidate"
-        gives = "gives no number" if found.tried == 1 else "gives a number"
+    measure = result.goal.measure
+    extreme = "largest" if result.goal.maximise else "smallest"
+    best = _with_values(result, result.best)
+    if math.isnan(result.estimate.value):
+        of = f"none of the {count_text(result.tried)} candidates" if result.tried > 1 else "the only candidate"
+        gives = "gives no number" if result.tried == 1 else "gives a number"
         yield f"{_capital(of)} that was tried {gives} for {measure.text}."
-        yield from _ended(found)
-        yield from lost_sentences(found)
+        yield from _ended(result)
+        yield from lost_sentences(result)
         return
-    if found.holds:
-        yield f"{_capital(measure.text)} is {extreme}, {measure.shown(found.found)}, with {best}."
+    if result.holds:
+        yield f"{_capital(measure.text)} is {extreme}, {measure.shown(result.estimate)}, with {best}."
     else:
-        yield from _missing(found, best)
-    for each in found.requirements:
+        yield from _missing(result, best)
+    for each in result.requirements:
         yield _requirement_text(each)
-    others = "no other that was tried" if not found.requirements else "no other that was tried and meets this as surely"
-    if found.tried == 1:
+    others = (
+        "no other that was tried" if not result.requirements else "no other that was tried and meets this as surely"
+    )
+    if result.tried == 1:
         yield "It is the only candidate."
-    elif found.holds:
+    elif result.holds:
         yield (
-            f"Of {count_text(found.tried)} candidates, {others} is better by more than {_small(found)}, a difference "
-            f"that does not matter here: {_percent(found.confidence)} confidence."
+            f"Of {count_text(result.tried)} candidates, {others} is better by more than {_small(result)}, a difference "
+            f"that does not matter here: {_percent(result.confidence)} confidence."
         )
-    better = [each for each in found.rivals if each.meets and each.significant and each.ahead > found.indifference]
-    for rival in better[: int(found.holds)]:
-        yield f"Fresh trials show {_with_values(found, rival.candidate)} to be better: give the search more --runs."
-    alike = [each for each in found.rivals if each.meets and not each.significant]
+    better = [each for each in result.rivals if each.meets and each.significant and each.ahead > result.indifference]
+    for rival in better[: int(result.holds)]:
+        yield f"Fresh trials show {_with_values(result, rival.candidate)} to be better: give the search more --runs."
+    alike = [each for each in result.rivals if each.meets and not each.significant]
     if alike:
-        named = "; ".join(_with_values(found, each.candidate) for each in alike[:4])
+        named = "; ".join(_with_values(result, each.candidate) for each in alike[:4])
         more = f"; and {len(alike) - 4} more" if len(alike) > 4 else ""
         yield f"These trials cannot tell it from {named}{more}."
-    if found.as_it_is is not None:
-        own = "no number" if math.isnan(found.as_it_is.value) else measure.shown(found.as_it_is)
-        lost = f", while errors take {_share(found.lost_as_it_is)} of the trials" * (
-            found.lost_as_it_is > found.allowed
+    if result.as_it_is is not None:
+        own = "no number" if math.isnan(result.as_it_is.value) else measure.shown(result.as_it_is)
+        lost = f", while errors take {_share(result.lost_as_it_is)} of the trials" * (
+            result.lost_as_it_is > result.allowed
         )
         yield f"With the workbook's own decisions {measure.text} is {own}{lost}."
-    yield from lost_sentences(found)
-    yield from _without_number(found)
-    yield from _ended(found)
+    yield from lost_sentences(result)
+    yield from _without_number(result)
+    yield from _ended(result)
 
 
-def _missing(found: Optimised, best: str) -> Iterator[str]:
+def _missing(result: Optimised, best: str) -> Iterator[str]:
     """Yield what is said first where the best of the search misses a requirement by fresh trials."""
-    measure = found.goal.measure
-    others = [each for each in found.rivals if each.meets]
+    measure = result.goal.measure
+    others = [each for each in result.rivals if each.meets]
     if not others:
         yield (
             f"No candidate that was tried meets what is required. With {best}, which misses it the least, "
-            f"{measure.text} is {measure.shown(found.found)}."
+            f"{measure.text} is {measure.shown(result.estimate)}."
         )
         return
     yield (
-        f"By fresh trials {best}, the best of the search with {measure.shown(found.found)}, misses what is required; "
-        f"{_with_values(found, others[0].candidate)} meets it. More trials (-n) tell more."
+        f"By fresh trials {best}, the best of the search with {measure.shown(result.estimate)}, misses what is "
+        f"required; {_with_values(result, others[0].candidate)} meets it. More trials (-n) tell more."
     )
 
 
-def _ended(found: Optimised) -> Iterator[str]:
-    if found.ended:
-        yield f"The search ended early, because {found.ended}: this is the best that was found by then."
+def _ended(result: Optimised) -> Iterator[str]:
+    if result.ended:
+        yield f"The search ended early, because {result.ended}: this is the best that was found by then."
 
 
-def _without_number(found: Optimised) -> Iterator[str]:
+def _without_number(result: Optimised) -> Iterator[str]:
     """Yield how many candidates give no number, and which texts nobody says."""
     from xlmc.montecarlo.number_text import count_text
 
-    if found.numberless:
-        count = found.numberless
+    if result.numberless:
+        count = result.numberless
         yield (
             f"{count_text(count)} candidate{'s give' if count > 1 else ' gives'} no number, since no trial was "
             "accepted, or the workbook is not possible with these values."
         )
-    if found.indifferent:
+    if result.indifferent:
         yield "All candidates give the same: the decisions do not change what is asked for."
-    for name, text in found.unsaid:
-        texts = ", ".join(f"“{each}”" for each in found.run.labels.get(name, ()))
+    for name, text in result.unsaid:
+        texts = ", ".join(f"“{each}”" for each in result.run.labels.get(name, ()))
         yield f"With these decisions no trial of {name} says “{text}”; its texts are {texts}."
 
 
-def lost_sentences(found: Optimised) -> Iterator[str]:
+def lost_sentences(result: Optimised) -> Iterator[str]:
     """Yield what is to be known of trials that errors take; nothing where they take few of any candidate."""
     from xlmc.montecarlo.number_text import count_text
 
-    most = _share(found.allowed)
-    if not found.is_whole:
+    most = _share(result.allowed)
+    if not result.is_whole:
         yield (
-            f"Errors in cells take {_share(found.lost)} of the trials of these decisions, and {most} is allowed. Mend "
+            f"Errors in cells take {_share(result.lost)} of the trials of these decisions, and {most} is allowed. Mend "
             "the cells, filter such trials out, or allow them (--allow-lost)."
         )
-    if found.excluded:
-        count = len(found.excluded)
+    if result.excluded:
+        count = len(result.excluded)
         yield (
             f"{count_text(count)} candidate{'s lose' if count > 1 else ' loses'} more than {most} of the trials to "
             "errors in cells, and cannot be the best: what the lost trials would be is not known."
         )
-    better = [each for each in found.excluded if each.looks_better]
+    better = [each for each in result.excluded if each.looks_better]
     if better:
-        named = "; ".join(f"{_with_values(found, each.candidate)} (loses {_share(each.lost)})" for each in better[:4])
+        named = "; ".join(f"{_with_values(result, each.candidate)} (loses {_share(each.lost)})" for each in better[:4])
         more = f"; and {count_text(len(better) - 4)} more" if len(better) > 4 else ""
         yield f"By the trials that are left these would be better: {named}{more}."
 
@@ -194,7 +196,7 @@ def _capital(text: str) -> str:
 
 def _requirement_text(each: RequirementResult) -> str:
     left, requirement = each.requirement.left, each.requirement
-    shown = left.shown(each.found)
+    shown = left.shown(each.estimate)
     if each.exact:
         return f"{requirement.text}: {'met' if each.chance > 0.5 else 'missed'}, {shown}."
     if each.chance <= 0.5:
@@ -202,116 +204,118 @@ def _requirement_text(each: RequirementResult) -> str:
     return f"{requirement.text} holds with {_percent(each.chance)} confidence: {shown}."
 
 
-def _blocks(found: Optimised) -> Iterator[Block]:
+def _blocks(result: Optimised) -> Iterator[Block]:
     from xlmc.outputs.document.parts import Chart, Figure, Line, Lines, Table
 
-    own = [found.run.model.workbook.content(each.cell).value for each in found.decisions]
-    assert len(own) == len(found.best)
+    own = [result.run.model.workbook.content(each.cell).value for each in result.decisions]
+    assert len(own) == len(result.best)
     rows = [
         (each.name, each.shown(value), each.units, str(each.cell))
-        for each, value in zip(found.decisions, found.best, strict=True)
+        for each, value in zip(result.decisions, result.best, strict=True)
     ]
-    if math.isnan(found.found.value):
+    if math.isnan(result.estimate.value):
         return
-    title = "The best decisions" if found.holds else "The decisions"
+    title = "The best decisions" if result.holds else "The decisions"
     yield Table(title, ("Decision", "Value", "Units", "Cell"), tuple(rows), (1,))
-    if found.requirements:
+    if result.requirements:
         stand = [
             (
                 each.requirement.text,
-                each.requirement.left.shown(each.found),
+                each.requirement.left.shown(each.estimate),
                 "" if each.exact else _percent(each.chance),
             )
-            for each in found.requirements
+            for each in result.requirements
         ]
         yield Table("What is required", ("Requirement", "Found", "Holds with"), tuple(stand), (1, 2))
-    if found.rivals:
-        heads = (*(each.name for each in found.decisions), "Better by", "Significant", "Meets the requirements")
-        heads = heads if found.requirements else heads[:-1]
-        lines = [_rival_row(found, each)[: len(heads)] for each in found.rivals]
-        yield Table("Others that come near", heads, tuple(lines), tuple(range(len(found.decisions) + 1)))
-    if len(found.curve) > 1:
-        (decision,) = found.decisions
+    if result.rivals:
+        heads = (*(each.name for each in result.decisions), "Better by", "Significant", "Meets the requirements")
+        heads = heads if result.requirements else heads[:-1]
+        lines = [_rival_row(result, each)[: len(heads)] for each in result.rivals]
+        yield Table("Others that come near", heads, tuple(lines), tuple(range(len(result.decisions) + 1)))
+    if len(result.curve) > 1:
+        (decision,) = result.decisions
         across = f"{decision.name}, {decision.units}" if decision.units else decision.name
-        said = f"{found.goal.measure.text} for the values of {decision.name} that were tried"
-        lines_drawn = Lines((Line(_capital(found.goal.measure.text), found.curve),), _axis(found), now=found.best[0])
-        yield Figure(Chart("", across, lines_drawn, said), said)
+        message = f"{result.goal.measure.text} for the values of {decision.name} that were tried"
+        lines_drawn = Lines(
+            (Line(_capital(result.goal.measure.text), result.curve),), _axis(result), now=result.best[0]
+        )
+        yield Figure(Chart("", across, lines_drawn, message), message)
 
 
-def _axis(found: Optimised) -> str:
-    measure = found.goal.measure
+def _axis(result: Optimised) -> str:
+    measure = result.goal.measure
     return f"{measure.text}, {measure.units}" if measure.units else measure.text
 
 
-def _rival_row(found: Optimised, each: Rival) -> tuple[str, ...]:
+def _rival_row(result: Optimised, each: Rival) -> tuple[str, ...]:
     from xlmc.montecarlo.statistics import Estimate
 
-    form = found.goal.measure.form
+    form = result.goal.measure.form
     sign = "+" if each.ahead > 0.0 else ""
     ahead = f"{sign}{form.spread(Estimate(each.ahead, each.error))}"
     significant = "yes" if each.significant else "no"
-    values = (one.shown(at) for one, at in zip(found.decisions, each.candidate, strict=True))
+    values = (one.shown(at) for one, at in zip(result.decisions, each.candidate, strict=True))
     return (*values, ahead, significant, "yes" if each.meets else "no")
 
 
-def _meaning(found: Optimised) -> str:
+def _meaning(result: Optimised) -> str:
     return (
-        f"The candidates come from {found.how}, over random numbers that all share (seed {found.search_seed}); the "
+        f"The candidates come from {result.how}, over random numbers that all share (seed {result.search_seed}); the "
         "numbers of the best come from fresh ones, so that being chosen does not make it look better. They are what "
         "`xlmc simulate` gives of the workbook with these decisions typed in. ± is the standard error "
         "(Monte Carlo error)."
     )
 
 
-def _contents(found: Optimised, values: tuple[float, ...]) -> list[float | str | bool]:
-    return [each.content(value) for each, value in zip(found.decisions, values, strict=True)]
+def _contents(result: Optimised, values: tuple[float, ...]) -> list[float | str | bool]:
+    return [each.content(value) for each, value in zip(result.decisions, values, strict=True)]
 
 
-def _as_json(found: Optimised, again: str) -> dict[str, object]:
+def _as_json(result: Optimised, again: str) -> dict[str, object]:
     from xlmc.outputs.studies.json_numbers import estimate_json
 
-    run = found.run
+    run = result.run
     return {
         "book": str(run.model.path),
-        "goal": {"text": found.goal.measure.text, "maximise": found.goal.maximise},
+        "goal": {"text": result.goal.measure.text, "maximise": result.goal.maximise},
         "decisions": [
             {"name": each.name, "cell": str(each.cell), "units": each.units, "value": each.content(value)}
-            for each, value in zip(found.decisions, found.best, strict=True)
+            for each, value in zip(result.decisions, result.best, strict=True)
         ],
-        "found": estimate_json(found.found),
-        "as_it_is": None if found.as_it_is is None else estimate_json(found.as_it_is),
+        "found": estimate_json(result.estimate),
+        "as_it_is": None if result.as_it_is is None else estimate_json(result.as_it_is),
         "requirements": [
             {
                 "text": each.requirement.text,
-                "found": estimate_json(each.found),
+                "found": estimate_json(each.estimate),
                 "probability": each.chance,
             }
-            for each in found.requirements
+            for each in result.requirements
         ],
-        "indifference": found.indifference,
-        "confidence": found.confidence,
+        "indifference": result.indifference,
+        "confidence": result.confidence,
         "others": [
             {
-                "values": _contents(found, each.candidate),
+                "values": _contents(result, each.candidate),
                 "better_by": {"value": each.ahead, "error": each.error},
                 "significant": each.significant,
                 "meets_requirements": each.meets,
                 "probability_better": each.chance,
                 "trials": each.trials,
             }
-            for each in found.rivals
+            for each in result.rivals
         ],
-        "lost": {"share": found.lost, "as_it_is": found.lost_as_it_is, "allowed": found.allowed},
+        "lost": {"share": result.lost, "as_it_is": result.lost_as_it_is, "allowed": result.allowed},
         "excluded": [
-            {"values": _contents(found, each.candidate), "lost": each.lost, "looks_better": each.looks_better}
-            for each in found.excluded
+            {"values": _contents(result, each.candidate), "lost": each.lost, "looks_better": each.looks_better}
+            for each in result.excluded
         ],
-        "tried": found.tried,
-        "trials_in_all": found.trials,
+        "tried": result.tried,
+        "trials_in_all": result.trials,
         "trials": run.trials,
         "seed": run.settings.seed,
-        "search_seed": found.search_seed,
-        "search": found.how,
-        "ended_early": found.ended or None,
+        "search_seed": result.search_seed,
+        "search": result.how,
+        "ended_early": result.ended or None,
         "command": again,
     }

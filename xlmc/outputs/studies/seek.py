@@ -17,51 +17,51 @@ if TYPE_CHECKING:
 __all__ = ["seek_report"]
 
 
-def seek_report(found: Found) -> StudyReport:
+def seek_report(result: Found) -> StudyReport:
     """Make the report."""
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
-    title = f"Where is {found.cell} equal to {found.form.number(found.to)}?"
-    below = f"{found.workbook.name}: {found.cell} as a function of {found.by}, all else as in the workbook"
-    return StudyReport(title, below, blocks_of(_blocks(found)), "Seek", partial(_as_json, found))
+    title = f"Where is {result.cell} equal to {result.form.number(result.to)}?"
+    below = f"{result.workbook.name}: {result.cell} as a function of {result.by}, all else as in the workbook"
+    return StudyReport(title, below, blocks_of(_blocks(result)), "Seek", partial(_as_json, result))
 
 
-def _blocks(found: Found) -> Iterator[str | Block]:
+def _blocks(result: Found) -> Iterator[str | Block]:
     from xlmc.outputs.document.parts import Chart, Figure, Line, Lines, Table
 
-    to, by = found.form.number(found.to), found.form_by
-    span = f"from {by.rough(found.low)} to {by.rough(found.high)}"
-    for low, high in found.throughout:
+    to, by = result.form.number(result.to), result.form_by
+    span = f"from {by.rough(result.low)} to {by.rough(result.high)}"
+    for low, high in result.throughout:
         between = f"from {by.rough(low)} to {by.rough(high)}"
-        yield f"{found.cell} is {to} wherever {found.by} is {between}, as finely as was looked."
-    if not found.values.size:
-        yield f"No value of {found.by} {span} makes {found.cell} equal to {to}."
-        if found.base_answer is None and all(each != each for each in found.curve[1]):  # no NaN equals itself
-            yield f"{found.cell} is no number for any value of {found.by} that was looked at."
-    elif found.values.size == 1:
-        yield f"{found.cell} is {to} where {found.by} is {_solved(by, found.values[0])}."
-    elif found.values.size > 2 * len(found.throughout):
-        many = f"{count_text(found.values.size)} values of {found.by} {span}"
-        yield f"{many} make {found.cell} equal to {to}."
-    base = [] if found.base is None else [("In the workbook", found.base, found.base_answer)]
-    solved = zip(found.values.tolist(), found.answers.tolist(), strict=True)
+        yield f"{result.cell} is {to} wherever {result.by} is {between}, as finely as was looked."
+    if not result.values.size:
+        yield f"No value of {result.by} {span} makes {result.cell} equal to {to}."
+        if result.base_answer is None and all(each != each for each in result.curve[1]):  # no NaN equals itself
+            yield f"{result.cell} is no number for any value of {result.by} that was looked at."
+    elif result.values.size == 1:
+        yield f"{result.cell} is {to} where {result.by} is {_solved(by, result.values[0])}."
+    elif result.values.size > 2 * len(result.throughout):
+        many = f"{count_text(result.values.size)} values of {result.by} {span}"
+        yield f"{many} make {result.cell} equal to {to}."
+    base = [] if result.base is None else [("In the workbook", result.base, result.base_answer)]
+    solved = zip(result.values.tolist(), result.answers.tolist(), strict=True)
     rows = [*base, *((f"Value {number}", *pair) for number, pair in enumerate(solved, 1))]
-    texts = tuple((name, _solved(by, at), "" if is_ is None else _solved(found.form, is_)) for name, at, is_ in rows)
+    texts = tuple((name, _solved(by, at), "" if is_ is None else _solved(result.form, is_)) for name, at, is_ in rows)
     if texts:
-        yield Table("What was found", ("", str(found.by), str(found.cell)), texts, (1, 2))
-    points = tuple((x, y) for x, y in zip(*map(list, found.curve), strict=True) if y == y)
+        yield Table("What was found", ("", str(result.by), str(result.cell)), texts, (1, 2))
+    points = tuple((x, y) for x, y in zip(*map(list, result.curve), strict=True) if y == y)
     if len(points) > 1:
-        wanted = tuple((at, found.to) for at in (points[0][0], points[-1][0]))
+        wanted = tuple((at, result.to) for at in (points[0][0], points[-1][0]))
         drawn = Lines(
-            (Line(str(found.cell), points), Line("Wanted", wanted)),
-            str(found.cell),
-            now=found.value,
+            (Line(str(result.cell), points), Line("Wanted", wanted)),
+            str(result.cell),
+            now=result.value,
             form_across=by,
-            form_upwards=found.form,
+            form_upwards=result.form,
         )
-        said = f"{found.cell} for values of {found.by}, and the value it is to have"
-        yield Figure(Chart("", str(found.by), drawn, said), said)
+        message = f"{result.cell} for values of {result.by}, and the value it is to have"
+        yield Figure(Chart("", str(result.by), drawn, message), message)
 
 
 def _solved(form: Form, value: float) -> str:
@@ -77,20 +77,20 @@ def _solved(form: Form, value: float) -> str:
     return f"{form.number(value)} ({serial})"
 
 
-def _as_json(found: Found) -> dict[str, object]:
+def _as_json(result: Found) -> dict[str, object]:
     from xlmc.montecarlo.statistics.estimate import finite
 
     return {
-        "book": str(found.workbook.name),
-        "cell": str(found.cell),
-        "to": found.to,
-        "by": str(found.by),
-        "low": found.low,
-        "high": found.high,
-        "throughout": [list(ends) for ends in found.throughout],
-        "base": {"by": found.base, "cell": found.base_answer},
+        "book": str(result.workbook.name),
+        "cell": str(result.cell),
+        "to": result.to,
+        "by": str(result.by),
+        "low": result.low,
+        "high": result.high,
+        "throughout": [list(ends) for ends in result.throughout],
+        "base": {"by": result.base, "cell": result.base_answer},
         "values": [
             {"by": value, "cell": finite(answer)}
-            for value, answer in zip(found.values.tolist(), found.answers.tolist(), strict=True)
+            for value, answer in zip(result.values.tolist(), result.answers.tolist(), strict=True)
         ],
     }

@@ -24,35 +24,38 @@ _LISTED = 20
 _LEVELS = {"WRONG": "Wrong", "DOUBTFUL": "Doubtful", "NOTE": "Note"}
 
 
-def _count(found: Stability) -> str:
+def _count(stability: Stability) -> str:
     """Say how many findings there are; of a search that was ended early no more than that it had none by then."""
-    levels = [finding.level.name for finding in found.findings]
+    levels = [finding.level.name for finding in stability.findings]
     counts = {word.lower(): levels.count(level) for level, word in _LEVELS.items() if level in levels}
     parts = [f"{count} {word}{'s' * (word == 'note' and count > 1)}" for word, count in counts.items()]
     if parts:
         return f"{len(levels)} finding{'s' * (len(levels) != 1)}: {', '.join(parts)}"
-    if found.ended:
+    if stability.ended:
         return "no finding by the time the search was ended"
     return "no finding: no cell loses digits, and none gives a misleading number"
 
 
-def stability_report(found: Stability, all_cells: bool = False) -> StudyReport:
+def stability_report(stability: Stability, all_cells: bool = False) -> StudyReport:
     """Make the report; with `all_cells` its table has every cell, and not those alone that lose digits."""
     from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
-    findings = [block for number, one in enumerate(found.findings, start=1) for block in _finding_blocks(number, one)]
+    findings = [
+        block for number, one in enumerate(stability.findings, start=1) for block in _finding_blocks(number, one)
+    ]
     blocks = blocks_of(
         [
-            f"{_count(found).capitalize()}.",
+            f"{_count(stability).capitalize()}.",
             *findings,
-            *([_cells(found, all_cells)] if found.cells else []),
-            *_sentences(found),
+            *([_cells(stability, all_cells)] if stability.cells else []),
+            *_sentences(stability),
         ]
     )
-    below = f"{found.run.model.workbook.name}: {count_text(found.run.trials)} trials, seed {found.run.settings.seed}"
-    return StudyReport("Can the digits be trusted?", below, blocks, "Stability", partial(_as_json, found), found.run)
+    run = stability.run
+    below = f"{run.model.workbook.name}: {count_text(run.trials)} trials, seed {run.settings.seed}"
+    return StudyReport("Can the digits be trusted?", below, blocks, "Stability", partial(_as_json, stability), run)
 
 
 def _finding_blocks(number: int, finding: Finding) -> Iterator[str | Block]:
@@ -69,11 +72,11 @@ def _finding_blocks(number: int, finding: Finding) -> Iterator[str | Block]:
         yield Code(finding.instead)
 
 
-def _cells(found: Stability, all_cells: bool) -> Table:
+def _cells(stability: Stability, all_cells: bool) -> Table:
     from xlmc.montecarlo.number_text import number_text
     from xlmc.outputs.document.parts import Table
 
-    model = found.run.model
+    model = stability.run.model
     targets = {row.cell for row in model.forecasts} | {row.cell for row in model.filters}
     rows = tuple(
         (
@@ -85,7 +88,7 @@ def _cells(found: Stability, all_cells: bool) -> Table:
             number_text(cell.rounding, 1),
             number_text(cell.excess, 2),
         )
-        for cell in found.cells
+        for cell in stability.cells
         if all_cells or cell.cell in targets
     )
     headings = (
@@ -101,7 +104,7 @@ def _cells(found: Stability, all_cells: bool) -> Table:
     return Table("What cells amplify and lose", headings, rows, (first - 1, first, first + 2, first + 3))
 
 
-def _sentences(found: Stability) -> Iterator[str]:
+def _sentences(stability: Stability) -> Iterator[str]:
     from xlmc.montecarlo.number_text import count_text
 
     yield (
@@ -110,34 +113,34 @@ def _sentences(found: Stability) -> Iterator[str]:
         "less. Rounding: the largest error by rounding, as a share of the central range or of the value. Excess: how "
         "many times larger that error is than the effect of rounding the assumptions alone; up to 7 in sound formulas."
     )
-    if found.ended:
-        left = ", ".join((*found.not_looked_for, "what every cell amplifies"))
-        yield ended_early("search", found.ended, f"Not looked for: {left}.")
-    trials = f"{count_text(found.points)} trial{'s' * (found.points != 1)}"
+    if stability.ended:
+        left = ", ".join((*stability.not_looked_for, "what every cell amplifies"))
+        yield ended_early("search", stability.ended, f"Not looked for: {left}.")
+    trials = f"{count_text(stability.points)} trial{'s' * (stability.points != 1)}"
     yield (
-        f"Examined: {trials} of a run of {count_text(found.run.trials)}, seed "
-        f"{found.run.settings.seed}, among them the base "
-        f"case and the ends of all ranges; {count_text(found.recomputed)} were computed again with 50 digits."
+        f"Examined: {trials} of a run of {count_text(stability.run.trials)}, seed "
+        f"{stability.run.settings.seed}, among them the base "
+        f"case and the ends of all ranges; {count_text(stability.recomputed)} were computed again with 50 digits."
     )
     cells: dict[str, list[Cell]] = {}
-    for cell, functions in found.unchecked:
+    for cell, functions in stability.unchecked:
         cells.setdefault(", ".join(functions), []).append(cell)
     for functions, where in cells.items():
         more = f" and {count_text(len(where) - _LISTED)} more cells" if len(where) > _LISTED else ""
         yield f"Not checked with 50 digits: {functions} in {', '.join(map(str, where[:_LISTED]))}{more}."
 
 
-def _as_json(found: Stability) -> dict[str, object]:
+def _as_json(stability: Stability) -> dict[str, object]:
     return {
-        "book": str(found.run.model.path),
-        "trials": found.run.trials,
-        "seed": found.run.settings.seed,
-        "points": found.points,
-        "recomputed": found.recomputed,
-        "findings": [_finding_json(finding) for finding in found.findings],
-        "cells": [_cell_json(cell) for cell in found.cells],
-        "ended_early": found.ended or None,
-        "unchecked": [{"cell": str(cell), "functions": list(names)} for cell, names in found.unchecked],
+        "book": str(stability.run.model.path),
+        "trials": stability.run.trials,
+        "seed": stability.run.settings.seed,
+        "points": stability.points,
+        "recomputed": stability.recomputed,
+        "findings": [_finding_json(finding) for finding in stability.findings],
+        "cells": [_cell_json(cell) for cell in stability.cells],
+        "ended_early": stability.ended or None,
+        "unchecked": [{"cell": str(cell), "functions": list(names)} for cell, names in stability.unchecked],
     }
 
 

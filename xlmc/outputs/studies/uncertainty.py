@@ -14,40 +14,40 @@ if TYPE_CHECKING:
 __all__ = ["uncertainty_report"]
 
 
-def uncertainty_report(found: TwoLoops) -> StudyReport:
+def uncertainty_report(loops: TwoLoops) -> StudyReport:
     """Make the report."""
     from xlmc.montecarlo.number_text import count_text
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
 
     below = (
-        f"{found.run.model.workbook.name}: {count_text(found.outer)} outer draws, "
-        f"{count_text(found.inner)} trials each, "
-        f"seed {found.run.settings.seed}"
+        f"{loops.run.model.workbook.name}: {count_text(loops.outer)} outer draws, "
+        f"{count_text(loops.inner)} trials each, "
+        f"seed {loops.run.settings.seed}"
     )
-    blocks = blocks_of([*_sentences(found), *_tables(found), *_meaning(found)])
+    blocks = blocks_of([*_sentences(loops), *_tables(loops), *_meaning(loops)])
     title = "How uncertain are the distributions of the answers?"
-    return StudyReport(title, below, blocks, "Uncertainty", partial(_as_json, found), found.run)
+    return StudyReport(title, below, blocks, "Uncertainty", partial(_as_json, loops), loops.run)
 
 
-def _sentences(found: TwoLoops) -> Iterator[str]:
+def _sentences(loops: TwoLoops) -> Iterator[str]:
     from xlmc.montecarlo.number_text import number_text
 
-    for each in found.forecasts:
+    for each in loops.forecasts:
         for band in each.stated:
             if band.is_share and band.low.value == band.high.value in (0.0, 1.0):
                 share = band.form.number(band.low.value)
-                draws = f"{number_text(found.confidence)} % of the outer draws or more"
+                draws = f"{number_text(loops.confidence)} % of the outer draws or more"
                 yield f"{_subject(each, band)} is {share} in {draws}, as far as their trials tell."
                 continue
             yield (
                 f"{_subject(each, band)} is between {_ends(each, band)} with "
-                f"{number_text(found.confidence)} % confidence."
+                f"{number_text(loops.confidence)} % confidence."
             )
-    if found.texts:
-        yield f"Not told, since the answers are texts: {'; '.join(found.texts)}."
-    if found.valueless:
-        yield f"No number in any accepted trial: {'; '.join(found.valueless)}."
+    if loops.texts:
+        yield f"Not told, since the answers are texts: {'; '.join(loops.texts)}."
+    if loops.valueless:
+        yield f"No number in any accepted trial: {'; '.join(loops.valueless)}."
 
 
 def _subject(each: ForecastBands, band: Band) -> str:
@@ -69,20 +69,20 @@ def _ends(each: ForecastBands, band: Band) -> str:
     return f"{ends}{units}"
 
 
-def _tables(found: TwoLoops) -> Iterator[Block]:
-    for each in found.forecasts:
-        yield _table(found, each)
+def _tables(loops: TwoLoops) -> Iterator[Block]:
+    for each in loops.forecasts:
+        yield _table(loops, each)
         if any(low != high for low, high in zip(each.low, each.high, strict=True)) and not each.bands[0].is_share:
-            yield _curve(found, each)
-    if len(found.uncertain) > 1 and found.forecasts:
-        yield _causes(found)
+            yield _curve(loops, each)
+    if len(loops.uncertain) > 1 and loops.forecasts:
+        yield _causes(loops)
 
 
 def _title(each: ForecastBands) -> str:
     return f"{each.definition.name}, {each.definition.units}" if each.definition.units else each.definition.name
 
 
-def _table(found: TwoLoops, each: ForecastBands) -> Table:
+def _table(loops: TwoLoops, each: ForecastBands) -> Table:
     from xlmc.analysis.studies.uncertainty import DEVIATION
     from xlmc.outputs.document.parts import Table
 
@@ -103,7 +103,7 @@ def _texts(band: Band, *, is_spread: bool) -> Iterator[str]:
             yield band.form.beside(end.value, band.pooled)
 
 
-def _curve(found: TwoLoops, each: ForecastBands) -> Figure:
+def _curve(loops: TwoLoops, each: ForecastBands) -> Figure:
     from xlmc.montecarlo.number_text import number_text
     from xlmc.outputs.document.parts import Chart, Figure, Line, Lines
 
@@ -111,79 +111,79 @@ def _curve(found: TwoLoops, each: ForecastBands) -> Figure:
     columns = (("All trials", each.curve), ("Band, lower end", each.low), ("Band, upper end", each.high))
     lines = tuple(Line(name, tuple(zip(values.tolist(), shares, strict=True))) for name, values in columns)
     name = each.definition.name
-    said = f"{name}: the cumulative curve of all trials, and its {number_text(found.confidence)} % band"
+    message = f"{name}: the cumulative curve of all trials, and its {number_text(loops.confidence)} % band"
     shown = Lines(lines, "Cumulative share", share=True, form_across=each.form)
-    return Figure(Chart("", _title(each), shown, said), said)
+    return Figure(Chart("", _title(each), shown, message), message)
 
 
-def _causes(found: TwoLoops) -> Table:
+def _causes(loops: TwoLoops) -> Table:
     from xlmc.outputs.document.parts import Table
     from xlmc.outputs.summary import estimate_text
 
-    shown = found.forecasts
-    rows = tuple((name, *(estimate_text(each.causes[name]) for each in shown)) for name in found.uncertain)
+    shown = loops.forecasts
+    rows = tuple((name, *(estimate_text(each.causes[name]) for each in shown)) for name in loops.uncertain)
     title = "What makes the bands wide: rank correlation of each uncertain assumption with the mean"
     heads = ("Uncertain", *(each.definition.name for each in shown))
     return Table(title, heads, rows, tuple(range(1, len(heads))))
 
 
-def _meaning(found: TwoLoops) -> Iterator[str]:
+def _meaning(loops: TwoLoops) -> Iterator[str]:
     from xlmc.montecarlo.number_text import count_text, fixed_text, number_text, styled_text
 
-    run = found.run
+    run = loops.run
     yield (
-        f"Uncertain, drawn in the outer loop: {'; '.join(found.uncertain)}. "
-        f"Variable, drawn in the inner loop: {'; '.join(found.variable) or 'none'}."
+        f"Uncertain, drawn in the outer loop: {'; '.join(loops.uncertain)}. "
+        f"Variable, drawn in the inner loop: {'; '.join(loops.variable) or 'none'}."
     )
     if run.accepted < run.trials:
-        empty = f" For {count_text(found.empty)} of the outer draws no trial was accepted." if found.empty else ""
-        few = min((each.effective for each in found.forecasts), default=0.0)
+        empty = f" For {count_text(loops.empty)} of the outer draws no trial was accepted." if loops.empty else ""
+        few = min((each.effective for each in loops.forecasts), default=0.0)
         yield (
             f"Of {count_text(run.trials)} trials {count_text(run.accepted)} were accepted. An outer "
             "draw counts by its accepted trials; "
             f"together they say as much as {fixed_text(few, 0)} draws of equal weight.{empty}"
         )
-    losing = [each.definition.name for each in found.forecasts if run.loses_too_many(each.definition.name)]
+    losing = [each.definition.name for each in loops.forecasts if run.loses_too_many(each.definition.name)]
     if losing:
         most = max(run.lost_share(name) for name in losing)
         yield (
             f"Errors in cells take up to {number_text(100.0 * most, 2)} % of the trials: what is said of "
             f"{'; '.join(losing)} concerns those that are left."
         )
-    if any(end.error is None for each in found.forecasts for band in each.bands for end in (band.low, band.high)):
+    if any(end.error is None for each in loops.forecasts for band in each.bands for end in (band.low, band.high)):
         yield "An end without ± is decided by one or two outer draws: take more of them (--outer)."
-    if found.wide:
-        each, band = max(found.wide, key=lambda one: one[1].excess)
+    if loops.wide:
+        each, band = max(loops.wide, key=lambda one: one[1].excess)
         yield (
             f"Too wide by up to {styled_text(band.excess, '.0%')} ({band.number} of "
-            f"{each.definition.name}): {count_text(found.inner)} inner "
+            f"{each.definition.name}): {count_text(loops.inner)} inner "
             "trials scatter. More of them (--inner) make the bands narrower."
         )
     yield (
         "Each outer draw is one thing that may be true, and its inner trials show what then varies. All trials: both "
-        f"together, as xlmc simulate has them. Band: the central {number_text(found.confidence)} % of "
+        f"together, as xlmc simulate has them. Band: the central {number_text(loops.confidence)} % of "
         "what the outer draws give. "
         "± is the standard error (Monte Carlo error) of a number; more outer draws (--outer) make that of the ends "
         "smaller."
     )
 
 
-def _as_json(found: TwoLoops) -> dict[str, object]:
-    run = found.run
+def _as_json(loops: TwoLoops) -> dict[str, object]:
+    run = loops.run
     return {
         "book": str(run.model.path),
-        "outer": found.outer,
-        "inner": found.inner,
+        "outer": loops.outer,
+        "inner": loops.inner,
         "seed": run.settings.seed,
-        "confidence": found.confidence,
+        "confidence": loops.confidence,
         "trials": run.trials,
         "accepted": run.accepted,
-        "outer_draws_without_accepted_trials": found.empty,
-        "uncertain": found.uncertain,
-        "variable": found.variable,
-        "forecasts": [_forecast_json(each) for each in found.forecasts],
-        "forecasts_of_texts": found.texts,
-        "forecasts_without_numbers": found.valueless,
+        "outer_draws_without_accepted_trials": loops.empty,
+        "uncertain": loops.uncertain,
+        "variable": loops.variable,
+        "forecasts": [_forecast_json(each) for each in loops.forecasts],
+        "forecasts_of_texts": loops.texts,
+        "forecasts_without_numbers": loops.valueless,
     }
 
 

@@ -11,12 +11,12 @@ from xlmc.analysis.results.record.make import LIBRARIES, processor, versions
 
 
 def test_versions_are_those_installed():
-    found = versions()
-    assert list(found) == ["xlmc", "python", *LIBRARIES]
-    assert found["xlmc"] == xlmc.__version__
-    assert found["python"] == platform.python_version()
-    assert found["numpy"] == numpy.__version__
-    assert found["formulas"] == version("formulas")
+    result = versions()
+    assert list(result) == ["xlmc", "python", *LIBRARIES]
+    assert result["xlmc"] == xlmc.__version__
+    assert result["python"] == platform.python_version()
+    assert result["numpy"] == numpy.__version__
+    assert result["formulas"] == version("formulas")
 
 
 def test_the_compiler_of_a_compiled_run_is_named():
@@ -25,10 +25,12 @@ def test_the_compiler_of_a_compiled_run_is_named():
 
 
 def test_the_processors_vector_instructions_are_named():
-    found = processor()
-    assert found["machine"] == platform.machine()
+    result = processor()
+    assert result["machine"] == platform.machine()
     enabled = numpy.show_config(mode="dicts")["SIMD Extensions"]
-    assert found["vector_instructions"].split() == [*enabled.get("baseline", []), *enabled.get("found", [])] or ["none"]
+    assert result["vector_instructions"].split() == [*enabled.get("baseline", []), *enabled.get("found", [])] or [
+        "none"
+    ]
 
 
 def test_the_machine_itself_is_not_named():

@@ -107,17 +107,17 @@ def test_filters_with_reasons_and_counts(run, record):
 
 def test_forecasts_with_results_at_full_precision(run, record):
     area, inverse, _ = record.rows("forecasts")
-    found = run["area"].statistics
-    low, high = found.central
+    result = run["area"].statistics
+    low, high = result.central
     assert area == {
         "name": "area",
         "cell": "S!B1",
         "units": "ft²",
         "range_share": 0.51,
         "threshold": 16.0,
-        "trials": found.trials,
-        "mean": found.mean.value,
-        "standard_deviation": found.standard_deviation.value,
+        "trials": result.trials,
+        "mean": result.mean.value,
+        "standard_deviation": result.standard_deviation.value,
         "low": low.value,
         "high": high.value,
         "notes": "Symbol: A",
@@ -127,14 +127,14 @@ def test_forecasts_with_results_at_full_precision(run, record):
 
 def test_correlations_warnings_and_notices(run, record):
     [pair] = record.rows("correlations")
-    found = rank_correlation(run.inputs["width"], run.inputs["length"])
+    result = rank_correlation(run.inputs["width"], run.inputs["length"])
     assert pair == {
         "first": "width",
         "second": "length",
         "rank_correlation": 0.4,
         "used": pytest.approx(0.4),
-        "accepted": found.value,
-        "accepted_error": found.error,
+        "accepted": result.value,
+        "accepted_error": result.error,
         "cell": "S!A9",
     }
     assert [row["message"] for row in record.rows("warnings")] == run.warnings != []
@@ -157,9 +157,9 @@ def test_errors_are_told_by_definition_cell_and_code(run, record):
 
 
 def test_a_record_is_plain_and_the_same_for_the_same_run(model, run, record):
-    found = json.dumps(record.as_dict(), allow_nan=False)
+    result = json.dumps(record.as_dict(), allow_nan=False)
     again = make_record(simulated(model, jobs=2), "xlmc simulate 'my book.xlsx'")
-    assert json.dumps(again.as_dict(), allow_nan=False) == found
+    assert json.dumps(again.as_dict(), allow_nan=False) == result
 
 
 def test_without_accepted_trials_there_is_no_mean_to_record(model):

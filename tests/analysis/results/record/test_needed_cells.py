@@ -93,8 +93,8 @@ def test_a_formula_as_it_reads_in_its_cell(workbook, formula, expected):
 
 
 def test_a_value_that_excel_saved_and_xlmc_takes(workbook):
-    found = held(workbook, 45000.5, Formula("NOW()", 2, 2))
-    assert content_text(*found, {found[1]}) == "=NOW()  (Excel saved 45000.5)"
+    result = held(workbook, 45000.5, Formula("NOW()", 2, 2))
+    assert content_text(*result, {result[1]}) == "=NOW()  (Excel saved 45000.5)"
 
 
 def test_the_cells_that_a_run_needs(book):

@@ -27,6 +27,9 @@ def test_unknown_keys_are_refused(key):
 
 
 def test_a_record_goes_through_json_unchanged():
-    found = RECORD.as_dict()
-    assert found == {"file": {"name": "a.xlsx", "size": 3}, "rows": {"rows": [{"k": 1, "v": None}, {"k": 2, "v": 0.5}]}}
-    assert json.loads(json.dumps(found, allow_nan=False)) == found
+    result = RECORD.as_dict()
+    assert result == {
+        "file": {"name": "a.xlsx", "size": 3},
+        "rows": {"rows": [{"k": 1, "v": None}, {"k": 2, "v": 0.5}]},
+    }
+    assert json.loads(json.dumps(result, allow_nan=False)) == result

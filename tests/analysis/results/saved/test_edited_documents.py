@@ -27,9 +27,11 @@ def tiny_run(small_book, tmp_path_factory):
     return keep(simulated(load(small_book), 20), tmp_path_factory.mktemp("edited") / "tiny.xlmcrun")
 
 
-def places(found, path=()):
+def places(result, path=()):
     """Paths to every value, keys of objects and positions of lists."""
-    for key, value in found.items() if isinstance(found, dict) else enumerate(found) if isinstance(found, list) else ():
+    for key, value in (
+        result.items() if isinstance(result, dict) else enumerate(result) if isinstance(result, list) else ()
+    ):
         yield (*path, key)
         yield from places(value, (*path, key))
 
@@ -64,10 +66,10 @@ def refusal(path):
 @pytest.mark.usefixtures("read_once")
 def test_any_value_of_another_kind(tiny_run, tmp_path):
     with zipfile.ZipFile(tiny_run) as package:
-        found = list(places(json.loads(package.read(RUN))))
-    assert len(found) > 60
-    tried = [(path, OTHERS[(number * 7 + 3) % len(OTHERS)]) for number, path in enumerate(found)]
-    tried += [(path, ...) for path in found[::2]]
+        result = list(places(json.loads(package.read(RUN))))
+    assert len(result) > 60
+    tried = [(path, OTHERS[(number * 7 + 3) % len(OTHERS)]) for number, path in enumerate(result)]
+    tried += [(path, ...) for path in result[::2]]
     refused = 0
     for path, value in tried:
         book = edited(tiny_run, tmp_path / "edited.xlmcrun", path, value)

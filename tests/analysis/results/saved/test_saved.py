@@ -201,8 +201,8 @@ def with_column(number, values, **about):
     return change
 
 
-def changed(**found):
-    return lambda parts, document: document.update(found)
+def changed(**result):
+    return lambda parts, document: document.update(result)
 
 
 FAULTS = {
@@ -313,11 +313,11 @@ FIELDS = ["settings", "stopped", "tally", "faults", "invalid", "columns", "order
 def test_an_edited_field_opens_as_a_run_or_is_refused_naming_the_file(tiny, tmp_path, field, value):
     path = repacked(tiny, tmp_path / "edited.xlmcrun", changed(**{field: value}))
     try:
-        found = open_run(path)
+        result = open_run(path)
     except XlmcError as error:
         text = str(error)
     else:
-        text = f"{path} {found.stopped.sentence} {found.accepted}"
+        text = f"{path} {result.stopped.sentence} {result.accepted}"
     assert str(path) in text
 
 
@@ -400,9 +400,9 @@ def test_a_damaged_file_is_a_message_or_does_no_harm(tiny, tmp_path, data):
     path = tmp_path / "broken.xlmcrun"
     path.write_bytes(broken)
     try:
-        found = open_run(path)
+        result = open_run(path)
     except XlmcError as error:
         message = str(error)  # anything else would be a traceback
         event(message.rpartition(": ")[2][:40])
     else:
-        assert same(found, open_run(tiny))
+        assert same(result, open_run(tiny))

@@ -131,8 +131,8 @@ def test_notes():
 
 
 def test_status(model):
-    found = {a.name: status(model, a.name, a.frozen) for a in model.assumptions}
-    assert found == {"width": "drawn", "length": "drawn", "idle": "not needed", "held": "frozen", "late": "drawn"}
+    result = {a.name: status(model, a.name, a.frozen) for a in model.assumptions}
+    assert result == {"width": "drawn", "length": "drawn", "idle": "not needed", "held": "frozen", "late": "drawn"}
 
 
 DRAG = Cell("Inputs", 28, 4)

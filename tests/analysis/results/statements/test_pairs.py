@@ -29,9 +29,9 @@ def run_of(columns, replicate=None, **more):
 def columns():
     rng = np.random.default_rng(7)
     first = rng.normal(20.0, 2.0, 4000)
-    found = {"a": first, "b": 0.6 * first + rng.normal(8.0, 1.6, 4000)}
-    found["a"][::17], found["b"][::13] = math.nan, math.nan
-    return found
+    result = {"a": first, "b": 0.6 * first + rng.normal(8.0, 1.6, 4000)}
+    result["a"][::17], result["b"][::13] = math.nan, math.nan
+    return result
 
 
 def test_a_pair_is_counted_where_both_are_numbers(columns):
@@ -71,9 +71,9 @@ def test_only_like_units_are_compared(columns):
 def test_one_forecast_has_no_pair_and_many_have_no_more_than_asked(columns):
     assert pairs_of(run_of({"a": columns["a"]})) == []
     many = {f"f{n}": columns["a"] + n for n in range(7)}
-    found = pairs_of(run_of(many))
-    assert len(found) == pairs.PAIRS
-    assert [(pair.first.name, pair.second.name) for pair in found[:2]] == [("f0", "f1"), ("f0", "f2")]
+    result = pairs_of(run_of(many))
+    assert len(result) == pairs.PAIRS
+    assert [(pair.first.name, pair.second.name) for pair in result[:2]] == [("f0", "f1"), ("f0", "f2")]
     assert len(pairs_of(run_of(many), most=3)) == 3
 
 

@@ -33,8 +33,8 @@ GRID = np.arange(100_000) / 1000.0  # 0 to 99.999, every percentile known
 
 
 def test_a_range_that_is_surely_more_probable_than_not_is_called_so():
-    [said] = sentences(GRID, units="mph", central=0.51)
-    assert said.startswith("speed: more probable than not (5")
+    [message] = sentences(GRID, units="mph", central=0.51)
+    assert message.startswith("speed: more probable than not (5")
 
 
 def test_another_range_is_called_by_its_share():
@@ -45,9 +45,9 @@ def test_another_range_is_called_by_its_share():
 
 @pytest.mark.parametrize("central", [0.4, 0.51, 0.8])
 def test_books_that_are_not_about_crashes_call_every_range_by_its_share(central):
-    (said,) = sentences(GRID, units="EUR", central=central, category="")
-    assert said.startswith(f"speed: the {100 * central:.0f} % range (")
-    assert " lies between " in said
+    (message,) = sentences(GRID, units="EUR", central=central, category="")
+    assert message.startswith(f"speed: the {100 * central:.0f} % range (")
+    assert " lies between " in message
     (bound,) = sentences(GRID, units="EUR", central=central, category="", role=Role.LOWER)
     assert ", with a probability of at least " in bound
 
@@ -57,11 +57,11 @@ def test_books_that_are_not_about_crashes_call_every_range_by_its_share(central)
 @pytest.mark.parametrize("factor", [1.0, 0.731])  # proportional in every trial, and so both are stated or neither
 def test_a_range_is_rounded_outwards_until_it_is_more_probable_than_not(n, report_to, factor):
     values = factor * np.random.default_rng(n).normal(40.0, 6.0, n)
-    found = {each.kind: each for each in certainties(Run(values, report_to=report_to).results["speed"])}["between"]
-    assert found.share.interval[0] > 0.5
-    assert found.share.value == np.mean((values >= found.low) & (values <= found.high))
+    result = {each.kind: each for each in certainties(Run(values, report_to=report_to).results["speed"])}["between"]
+    assert result.share.interval[0] > 0.5
+    assert result.share.value == np.mean((values >= result.low) & (values <= result.high))
     if report_to is not None and report_to >= 1.0:
-        assert (found.low % report_to, found.high % report_to) == (0.0, 0.0)
+        assert (result.low % report_to, result.high % report_to) == (0.0, 0.0)
     (text,) = sentences(values, units="mph", report_to=report_to)
     assert "more probable than not (" in text or f" in all {n} trials" in text
 
@@ -85,8 +85,8 @@ def test_three_trials_cannot_tell_and_a_range_below_even_odds_claims_nothing():
     ],
 )
 def test_answers_are_stated_at_the_resolution_that_is_asked_for(report_to, text):
-    (found,) = sentences(GRID, units="mph", report_to=report_to)
-    assert found.removesuffix(" in all 100,000 trials; at least 99.9961 % with 95 % confidence").endswith(text)
+    (result,) = sentences(GRID, units="mph", report_to=report_to)
+    assert result.removesuffix(" in all 100,000 trials; at least 99.9961 % with 95 % confidence").endswith(text)
 
 
 @pytest.mark.parametrize(
@@ -97,8 +97,8 @@ def test_answers_are_stated_at_the_resolution_that_is_asked_for(report_to, text)
     ],
 )
 def test_a_constant_is_stated_within_the_resolution(value, text):
-    (found,) = sentences([value] * 40, units="mph", report_to=1.0)
-    assert found == text
+    (result,) = sentences([value] * 40, units="mph", report_to=1.0)
+    assert result == text
 
 
 @pytest.mark.parametrize(
@@ -118,17 +118,17 @@ def test_a_constant_is_stated_within_the_resolution(value, text):
     ids=str,
 )
 def test_bounds_are_stated_on_one_side_and_diagnostics_not_at_all(role, definition, texts):
-    found = sentences(GRID, units="mph", report_to=2.0, role=role, **definition)
-    assert found[-len(texts) :] == texts if texts else found == []
+    result = sentences(GRID, units="mph", report_to=2.0, role=role, **definition)
+    assert result[-len(texts) :] == texts if texts else result == []
 
 
 @pytest.mark.parametrize("role", [Role.LOWER, Role.UPPER])
 @pytest.mark.parametrize("central", [0.4, 0.51, 0.95])
 def test_the_two_sides_of_a_bound_are_all_trials(role, central):
     values = np.random.default_rng(5).gamma(2.0, 3.0, 4000)
-    found = {each.kind: each for each in certainties(Run(values, role=role, central=central).results["speed"])}
-    assert sum(each.share.value for each in found.values()) == pytest.approx(1.0, abs=1e-12)
-    between = found["between"]
+    result = {each.kind: each for each in certainties(Run(values, role=role, central=central).results["speed"])}
+    assert sum(each.share.value for each in result.values()) == pytest.approx(1.0, abs=1e-12)
+    between = result["between"]
     assert between.share.value == np.mean((values >= between.low) & (values <= between.high)) >= central
     assert (between.high if role is Role.LOWER else -between.low) == math.inf
 
@@ -199,9 +199,9 @@ def test_the_threshold_has_a_sentence_of_its_own(threshold, text):
 )
 def test_the_range_that_was_asked_for_has_a_sentence_and_a_certainty(asked, text, words):
     assert sentences(GRID, units="mph", asked=asked)[1] == text
-    found = certainties(Run(GRID, units="mph", asked=asked).results["speed"])[-1]
-    assert (found.kind, found.low, found.high, found.words) == ("asked", *asked, words)
-    assert round(found.share.value * 100_000) == np.count_nonzero((asked[0] <= GRID) & (asked[1] >= GRID))
+    result = certainties(Run(GRID, units="mph", asked=asked).results["speed"])[-1]
+    assert (result.kind, result.low, result.high, result.words) == ("asked", *asked, words)
+    assert round(result.share.value * 100_000) == np.count_nonzero((asked[0] <= GRID) & (asked[1] >= GRID))
     assert sentences([], asked=asked) == ["speed: no trial is accepted"]
 
 
@@ -227,19 +227,19 @@ def test_without_units_numbers_or_variation():
 @pytest.mark.parametrize("values", [GRID, GRID[:7], [1.0, 1.0, 2.0], [5.0]])
 def test_below_between_and_above_are_all_trials(values):
     run = Run(values, units="mph", threshold=2.0)
-    found = {each.kind: each for each in certainties(run.results["speed"])}
-    whole = sum(found[kind].share.value for kind in ("below", "between", "above"))
+    result = {each.kind: each for each in certainties(run.results["speed"])}
+    whole = sum(result[kind].share.value for kind in ("below", "between", "above"))
     assert whole == pytest.approx(1.0, abs=1e-12)
-    assert found["at most"].share.value + found["over"].share.value == pytest.approx(1.0, abs=1e-12)
+    assert result["at most"].share.value + result["over"].share.value == pytest.approx(1.0, abs=1e-12)
     values = np.asarray(values)
-    between = found["between"]
+    between = result["between"]
     inside = np.mean((values >= between.low) & (values <= between.high))
     assert between.share.value == pytest.approx(inside, abs=1e-12)
-    assert found["over"].share.value == np.mean(values > 2.0)
-    assert found["over"].words == "above 2 mph"
+    assert result["over"].share.value == np.mean(values > 2.0)
+    assert result["over"].words == "above 2 mph"
 
 
-@pytest.mark.parametrize(("threshold", "told"), [(0.5, 1), (0.0, 1), (1.0, 2), (-1.0, 2)])
-def test_that_a_yes_is_above_one_half_is_not_told_again(threshold, told):
+@pytest.mark.parametrize(("threshold", "messages"), [(0.5, 1), (0.0, 1), (1.0, 2), (-1.0, 2)])
+def test_that_a_yes_is_above_one_half_is_not_told_again(threshold, messages):
     values = np.repeat([0.0, 1.0], [30, 70])
-    assert len(sentences(values, threshold=threshold)) == told
+    assert len(sentences(values, threshold=threshold)) == messages

@@ -34,10 +34,10 @@ def test_shares_have_the_digits_of_their_error(number, text):
     ],
 )
 def test_none_and_all_are_bounded_rather_than_0_and_0(hits, text):
-    found = proportion(hits, 30_000)
-    assert percent_text(found) == text
+    result = proportion(hits, 30_000)
+    assert percent_text(result) == text
     bound = float(re.search(r"(?:most|least) ([\d.]+) %", text)[1]) / 100.0
-    low, high = found.interval
+    low, high = result.interval
     assert bound >= high if hits == 0 else bound <= low  # rounded to the safe side
 
 
@@ -52,25 +52,28 @@ def test_a_rounded_range_holds_its_share_and_lies_near_its_ends(seed, n, centre,
     sample = Sample.of(np.random.default_rng(seed).normal(centre, spread, n))
     ends = statistics.central_interval(sample, nominal)
     inside = statistics.probability_between(sample, ends[0].value, ends[1].value).value
-    found = rounded_range(sample, ends, min(nominal, inside))
-    assert found.share.value >= min(nominal, inside)
-    assert found.share == statistics.probability_between(sample, found.low, found.high)
-    assert (float(found.low_text.replace(",", "")), float(found.high_text.replace(",", ""))) == (found.low, found.high)
+    result = rounded_range(sample, ends, min(nominal, inside))
+    assert result.share.value >= min(nominal, inside)
+    assert result.share == statistics.probability_between(sample, result.low, result.high)
+    assert (float(result.low_text.replace(",", "")), float(result.high_text.replace(",", ""))) == (
+        result.low,
+        result.high,
+    )
     errors = [end.error for end in ends if end.error]
     unit = 5.01 * max(errors) if errors else 1e-4 * max(abs(centre), spread)
-    assert abs(found.low - ends[0].value) <= unit
-    assert abs(found.high - ends[1].value) <= unit
+    assert abs(result.low - ends[0].value) <= unit
+    assert abs(result.high - ends[1].value) <= unit
 
 
 def test_ends_have_one_number_of_decimals_and_constants_no_noise():
     sample = Sample.of(np.random.default_rng(1).normal(23.06, 1.4, 3500))
-    found = rounded_range(sample, statistics.central_interval(sample), 0.51)
-    assert re.fullmatch(r"22\.\d", found.low_text)
-    assert re.fullmatch(r"2[34]\.\d", found.high_text)
+    result = rounded_range(sample, statistics.central_interval(sample), 0.51)
+    assert re.fullmatch(r"22\.\d", result.low_text)
+    assert re.fullmatch(r"2[34]\.\d", result.high_text)
     for value, text in ((3.0, "3"), (177919.6712, "177,919.6712"), (0.1 + 0.2, "0.3")):
         constant = Sample.of([value] * 50)
-        found = rounded_range(constant, statistics.central_interval(constant), 0.51)
-        assert (found.low, found.low_text, found.high_text, found.share.value) == (value, text, text, 1.0)
+        result = rounded_range(constant, statistics.central_interval(constant), 0.51)
+        assert (result.low, result.low_text, result.high_text, result.share.value) == (value, text, text, 1.0)
 
 
 def test_without_trials_there_is_no_range():
@@ -87,5 +90,5 @@ def test_without_trials_there_is_no_range():
 )
 def test_two_ends_without_an_error_have_as_many_decimals(low, high, texts):
     values = np.array([low] * 40 + [high] * 60)
-    found = rounded_range(Sample.of(values), (Estimate(low, 0.0), Estimate(high, 0.0)), 0.9)
-    assert (found.low_text, found.high_text) == texts
+    result = rounded_range(Sample.of(values), (Estimate(low, 0.0), Estimate(high, 0.0)), 0.9)
+    assert (result.low_text, result.high_text) == texts

@@ -39,19 +39,19 @@ def linear(book):
     return make
 
 
-def only(found):
-    (single,) = found.forecasts
+def only(result):
+    (single,) = result.forecasts
     return single
 
 
 def test_a_book_agrees_with_itself_exactly(linear):
-    found = compare(linear(), linear(name="y.xlsx"), "1e-9", **SIZE)
-    assert found.simpler is None
-    assert found.acceptance.both == 20_000
-    assert only(found).judgement.verdict is Verdict.WITHIN
-    assert only(found).difference.wasserstein.value == 0.0
-    assert only(found).same_in_every_trial
-    assert verdict_text(found) == ["The two books agree for y to 1e-09."]
+    result = compare(linear(), linear(name="y.xlsx"), "1e-9", **SIZE)
+    assert result.simpler is None
+    assert result.acceptance.both == 20_000
+    assert only(result).judgement.verdict is Verdict.WITHIN
+    assert only(result).difference.wasserstein.value == 0.0
+    assert only(result).same_in_every_trial
+    assert verdict_text(result) == ["The two books agree for y to 1e-09."]
 
 
 @pytest.mark.parametrize(
@@ -63,59 +63,59 @@ def test_a_book_agrees_with_itself_exactly(linear):
     ],
 )
 def test_distributions_that_agree_where_trials_do_not(linear, first, second):
-    found = compare(linear(first), linear(second, "y.xlsx"), "0.1", **SIZE)
-    assert only(found).judgement.verdict is Verdict.WITHIN
-    assert only(found).only_distributions_agree
-    message = verdict_text(found)
+    result = compare(linear(first), linear(second, "y.xlsx"), "0.1", **SIZE)
+    assert only(result).judgement.verdict is Verdict.WITHIN
+    assert only(result).only_distributions_agree
+    message = verdict_text(result)
     assert message[0] == "The two books agree for y to 0.1."
     assert message[1].startswith("Of y only the distributions agree, and the trials do not")
 
 
 def test_the_size_of_differences_in_one_trial(linear):
     """a − (1 − a) is uniform on (−1, 1): root mean square 1/√3."""
-    found = only(compare(linear("=A1"), linear("=1-A1", "y.xlsx"), "0.1", **SIZE)).difference
-    assert found.typical == pytest.approx(1 / math.sqrt(3), rel=0.02)
-    assert found.largest == pytest.approx(1.0, abs=1e-3)
+    result = only(compare(linear("=A1"), linear("=1-A1", "y.xlsx"), "0.1", **SIZE)).difference
+    assert result.typical == pytest.approx(1 / math.sqrt(3), rel=0.02)
+    assert result.largest == pytest.approx(1.0, abs=1e-3)
 
 
 def test_small_differences_in_every_trial_are_agreement(linear):
-    found = compare(linear("=A1+B1"), linear("=A1+B1+0.01*SIN(40*A1)", "y.xlsx"), "0.1", **SIZE)
-    assert not only(found).only_distributions_agree
-    assert len(verdict_text(found)) == 1
+    result = compare(linear("=A1+B1"), linear("=A1+B1+0.01*SIN(40*A1)", "y.xlsx"), "0.1", **SIZE)
+    assert not only(result).only_distributions_agree
+    assert len(verdict_text(result)) == 1
 
 
 def test_a_shift_in_the_formulas_is_exact_and_nothing_else_accounts_for_it(linear):
-    found = compare(linear(), linear("=A1+B1+0.25", "y.xlsx"), "0.2", **SIZE)
-    assert only(found).difference.mean.difference.value == pytest.approx(0.25, abs=1e-12)
-    assert only(found).difference.mean.difference.error < 1e-12
-    assert only(found).judgement.verdict is Verdict.BEYOND
-    assert only(found).cause.steps == ()
-    assert "the cause is in the formulas or in values that are held" in verdict_text(found)[0]
+    result = compare(linear(), linear("=A1+B1+0.25", "y.xlsx"), "0.2", **SIZE)
+    assert only(result).difference.mean.difference.value == pytest.approx(0.25, abs=1e-12)
+    assert only(result).difference.mean.difference.error < 1e-12
+    assert only(result).judgement.verdict is Verdict.BEYOND
+    assert only(result).cause.steps == ()
+    assert "the cause is in the formulas or in values that are held" in verdict_text(result)[0]
 
 
 def test_an_assumption_that_only_one_book_draws(linear):
     """a + b against a: the SD falls from √(2/12) to √(1/12), and with b held both are a + 0.5."""
-    found = compare(linear(), linear(name="y.xlsx", frozen=["b"]), "0.01", **SIZE)
-    assert found.simpler == 1
-    change = only(found).difference.standard_deviation.difference
+    result = compare(linear(), linear(name="y.xlsx", frozen=["b"]), "0.01", **SIZE)
+    assert result.simpler == 1
+    change = only(result).difference.standard_deviation.difference
     assert abs(change.value - (math.sqrt(1 / 12) - math.sqrt(2 / 12))) < 4 * change.error
-    (step,) = only(found).cause.steps
+    (step,) = only(result).cause.steps
     assert (step.kind, step.side, step.name) == ("assumption", 0, "b")
-    assert only(found).cause.left.value == 0.0
-    assert [u.name for u in found.inputs.frozen_differently] == ["b"]
-    assert "because only x.xlsx draws 'b'; with it held at the base value" in verdict_text(found)[0]
+    assert only(result).cause.left.value == 0.0
+    assert [u.name for u in result.inputs.frozen_differently] == ["b"]
+    assert "because only x.xlsx draws 'b'; with it held at the base value" in verdict_text(result)[0]
 
 
 def test_a_filter_that_only_one_book_has(linear):
     """y = a + b where a > 1/2: the mean rises by 1/4."""
     filters = {"fast": {"cell": "A1", "above": 0.5}, "idle": {"cell": "B1", "above": -1}}
-    found = compare(linear(filters=filters), linear(name="y.xlsx"), "0.1", **SIZE)
-    change = only(found).difference.mean.difference
+    result = compare(linear(filters=filters), linear(name="y.xlsx"), "0.1", **SIZE)
+    change = only(result).difference.mean.difference
     assert abs(change.value + 0.25) < 4 * change.error
-    (step,) = only(found).cause.steps
+    (step,) = only(result).cause.steps
     assert (step.kind, step.side, step.name) == ("filter", 0, "fast")
-    assert found.inputs.filters == (("fast", "idle"), ())
-    (sentence,) = verdict_text(found)
+    assert result.inputs.filters == (("fast", "idle"), ())
+    (sentence,) = verdict_text(result)
     assert "because the filter 'fast' of x.xlsx moves it; without it the mean differs by 0" in sentence
     assert "they give the same number: they differ only in which trials they accept" in sentence
 
@@ -124,34 +124,34 @@ def test_two_filters_that_are_both_needed_are_both_named(linear):
     """a > 1/2 and b > 1/2 raise the mean by 1/4 each; b > 0.05 only by 0.025, which the tolerance allows."""
     filters = {"one": {"cell": "A1", "above": 0.5}, "two": {"cell": "B1", "above": 0.5}}
     filters["small"] = {"cell": "B1", "above": 0.05}
-    found = compare(linear(), linear(name="y.xlsx", filters=filters), "0.1", **SIZE)
-    assert {step.name for step in only(found).cause.steps} == {"one", "two"}
+    result = compare(linear(), linear(name="y.xlsx", filters=filters), "0.1", **SIZE)
+    assert {step.name for step in only(result).cause.steps} == {"one", "two"}
 
 
 def test_filters_of_one_name_with_other_limits_are_not_the_same(linear):
     limits = [{"fast": {"cell": "A1", "above": limit}} for limit in (0.2, 0.6)]
-    found = compare(linear(filters=limits[0]), linear(name="y.xlsx", filters=limits[1]), "0.01", **SIZE)
-    assert found.inputs.filters == (("fast",), ("fast",))
-    assert {step.side for step in only(found).cause.steps} == {0, 1}
+    result = compare(linear(filters=limits[0]), linear(name="y.xlsx", filters=limits[1]), "0.01", **SIZE)
+    assert result.inputs.filters == (("fast",), ("fast",))
+    assert {step.side for step in only(result).cause.steps} == {0, 1}
 
 
 def test_distributions_that_differ_are_said_and_can_be_the_cause(linear):
     """b uniform on (0, 2): the same uniforms, so y differs by b in every trial, 1/2 in the mean."""
-    found = compare(linear(), linear(name="y.xlsx", b=(0, 2)), "0.1", **SIZE)
-    assert [u.name for u in found.inputs.unlike] == ["b"]
-    assert found.inputs.alike == ("a",)
-    change = only(found).difference.mean.difference
+    result = compare(linear(), linear(name="y.xlsx", b=(0, 2)), "0.1", **SIZE)
+    assert [u.name for u in result.inputs.unlike] == ["b"]
+    assert result.inputs.alike == ("a",)
+    change = only(result).difference.mean.difference
     assert abs(change.value - 0.5) < 4 * change.error
     assert change.error == pytest.approx(math.sqrt(1 / 12 / 20_000), rel=0.05)  # of b alone: a cancels
-    (step,) = only(found).cause.steps
+    (step,) = only(result).cause.steps
     assert (step.kind, step.name) == ("distribution", "b")
-    assert "'b' is not the same: Uniform: Low 0, High 1 | Uniform: Low 0, High 2." in inputs_text(found)
+    assert "'b' is not the same: Uniform: Low 0, High 1 | Uniform: Low 0, High 2." in inputs_text(result)
 
 
 def test_units_are_converted(linear):
-    found = compare(linear(units="mph"), linear("=(A1+B1)*1.609344", "y.xlsx", "km/h"), "1e-9 mph", **SIZE)
-    assert only(found).judgement.verdict is Verdict.WITHIN
-    assert only(found).factor == pytest.approx(1 / 1.609344)
+    result = compare(linear(units="mph"), linear("=(A1+B1)*1.609344", "y.xlsx", "km/h"), "1e-9 mph", **SIZE)
+    assert only(result).judgement.verdict is Verdict.WITHIN
+    assert only(result).factor == pytest.approx(1 / 1.609344)
 
 
 @pytest.mark.parametrize(("mine", "theirs"), [("mph", "deg"), ("mph", ""), ("mph", "furlongs")])
@@ -163,12 +163,12 @@ def test_units_that_cannot_be_converted_are_refused(linear, mine, theirs):
 def test_forecasts_are_paired_by_name_and_by_hand(linear):
     first = linear(more={"z": ("E1", "=A1")})
     second = linear(name="y.xlsx", more={"w": ("E1", "=A1")})
-    found = compare(first, second, "0.1", **SIZE)
-    assert [each.first.name for each in found.forecasts] == ["y"]
-    assert found.unpaired == (("z",), ("w",))
-    found = compare(first, second, "0.1", pairs={"Z": "w"}, **SIZE)
-    assert [(each.first.name, each.second.name) for each in found.forecasts] == [("y", "y"), ("z", "w")]
-    assert "z (w) to 0.1" in verdict_text(found)[0]
+    result = compare(first, second, "0.1", **SIZE)
+    assert [each.first.name for each in result.forecasts] == ["y"]
+    assert result.unpaired == (("z",), ("w",))
+    result = compare(first, second, "0.1", pairs={"Z": "w"}, **SIZE)
+    assert [(each.first.name, each.second.name) for each in result.forecasts] == [("y", "y"), ("z", "w")]
+    assert "z (w) to 0.1" in verdict_text(result)[0]
     crossed = compare(first, second, "5", pairs={"y": "w"}, **SIZE)
     assert crossed.unpaired == (("z",), ("y",))
 
@@ -199,22 +199,22 @@ def test_undecided_and_decided_by_as_many_trials_as_it_asks_for(linear):
 
 def test_nothing_accepted_is_undecided(linear):
     impossible = linear(name="y.xlsx", filters={"never": {"cell": "A1", "above": 2}})
-    found = compare(linear(), impossible, "0.1", **SIZE)
-    assert only(found).judgement.verdict is Verdict.UNDECIDED
-    assert found.trials_needed is None
-    assert "too few of them are accepted" in verdict_text(found)[0]
+    result = compare(linear(), impossible, "0.1", **SIZE)
+    assert only(result).judgement.verdict is Verdict.UNDECIDED
+    assert result.trials_needed is None
+    assert "too few of them are accepted" in verdict_text(result)[0]
 
 
 def test_a_forecast_without_numbers_is_not_called_a_want_of_accepted_trials(book):
     model = book({"A1": 0.5, "B1": "=SQRT(-1-A1)"}, {"a": {"cell": "A1", "low": 0, "high": 1}}, {"y": "B1"})
-    found = compare(model, model, "1", **SIZE)
-    assert "it is a number in none of the 20,000 trials that" in verdict_text(found)[0]
-    assert inputs_text(found) == ["1 assumption is drawn alike in both books."]
+    result = compare(model, model, "1", **SIZE)
+    assert "it is a number in none of the 20,000 trials that" in verdict_text(result)[0]
+    assert inputs_text(result) == ["1 assumption is drawn alike in both books."]
 
 
 def test_books_of_one_file_name_go_by_their_paths(linear):
-    found = compare(linear(name="one/x.xlsx"), linear(name="two/x.xlsx"), "1", **SIZE)
-    assert book_names(found) == (str(Path("one/x.xlsx")), str(Path("two/x.xlsx")))
+    result = compare(linear(name="one/x.xlsx"), linear(name="two/x.xlsx"), "1", **SIZE)
+    assert book_names(result) == (str(Path("one/x.xlsx")), str(Path("two/x.xlsx")))
 
 
 def test_the_ladder_on_the_case_study(planar, momentum):
@@ -227,9 +227,9 @@ def test_the_ladder_on_the_case_study(planar, momentum):
     Of what must be within, the lower end of Chevrolet's impact speed differs most: by 0.63, with an error of 0.06 at
     60,000 trials. A verdict clears the accuracy by three errors: 0.81.
     """
-    found = compare(planar, momentum, ["0.9 mph", "Nissan delta-V=1.5 mph"], trials=60_000)
-    assert found.simpler == 1
-    verdicts = {each.first.name: each.judgement.verdict for each in found.forecasts}
+    result = compare(planar, momentum, ["0.9 mph", "Nissan delta-V=1.5 mph"], trials=60_000)
+    assert result.simpler == 1
+    verdicts = {each.first.name: each.judgement.verdict for each in result.forecasts}
     assert verdicts == {
         "Chevrolet delta-V": Verdict.WITHIN,
         "Nissan delta-V": Verdict.WITHIN,
@@ -237,16 +237,16 @@ def test_the_ladder_on_the_case_study(planar, momentum):
         "Nissan impact speed": Verdict.BEYOND,
     }
     expected = {"Chevrolet delta-V": 0.3625, "Nissan delta-V": 0.7076, "Chevrolet impact speed": 0.5291}
-    for each in found.forecasts:
+    for each in result.forecasts:
         assert each.same_in_every_trial
         if each.first.name in expected:
             change = each.difference.mean.difference
             assert abs(change.value - expected[each.first.name]) < 4 * change.error + 0.02
-    assert found.acceptance.first_only == 0
-    cause = next(each.cause for each in found.forecasts if each.cause)
+    assert result.acceptance.first_only == 0
+    cause = next(each.cause for each in result.forecasts if each.cause)
     assert [(step.kind, step.name) for step in cause.steps] == [("filter", "Restitution, tangential")]
-    assert len(found.inputs.alike) == 10
-    assert len(found.inputs.drawn[0]) == 7
+    assert len(result.inputs.alike) == 10
+    assert len(result.inputs.drawn[0]) == 7
 
 
 def test_the_probability_of_being_above_the_threshold_is_compared(book):
@@ -254,12 +254,12 @@ def test_the_probability_of_being_above_the_threshold_is_compared(book):
     first, second = (book({"A1": 0.5, "D1": f"=A1+IF(A1>0.98,{more},0)"}, given, {"y": "D1"}) for more in (0, 3))
     asked = replace(first.definitions.forecasts[0], threshold=2.0)
     first = CompiledModel(first.workbook, replace(first.definitions, forecasts=(asked,)), first.path)
-    found = compare(first, second, "1", trials=20_000, seed=1)
-    (each,) = found.forecasts
+    result = compare(first, second, "1", trials=20_000, seed=1)
+    (each,) = result.forecasts
     assert each.judgement.verdict is Verdict.BEYOND
     assert each.judgement.largest == "P(> 2)"
     assert each.difference.above.second.value == pytest.approx(0.02, abs=0.004)
-    (message,) = verdict_text(found)
+    (message,) = verdict_text(result)
     assert "y to 1 and P(> 2) to 0.1 points: P(> 2) differs by " in message
     assert "points" in message.partition("differs by")[2]
     assert compare(first, second, "1", chance=5, trials=20_000, seed=1).forecasts[0].judgement.verdict is Verdict.WITHIN
@@ -267,8 +267,8 @@ def test_the_probability_of_being_above_the_threshold_is_compared(book):
 
 def test_trials_that_errors_take_from_one_book_are_told(linear):
     """The second book's answer is the first's where a is 1/2 or more, and else an error."""
-    found = compare(linear(), linear("=A1+B1+0*SQRT(A1-0.5)", name="y.xlsx"), "1", causes=False, **SIZE)
-    (sentence,) = (text for text in verdict_text(found) if "errors" in text)
+    result = compare(linear(), linear("=A1+B1+0*SQRT(A1-0.5)", name="y.xlsx"), "1", causes=False, **SIZE)
+    (sentence,) = (text for text in verdict_text(result) if "errors" in text)
     assert sentence.startswith("In y.xlsx errors in cells take up to 5")
     assert not any("errors" in text for text in verdict_text(compare(linear(), linear(name="y.xlsx"), "1", **SIZE)))
 

@@ -19,25 +19,25 @@ SIZE = {"trials": 20_000, "seed": 1}
 
 def test_draws_come_from_what_the_other_book_answers_in_the_unit_of_the_first(answering):
     mine, other = answering("a", 0, 100, "km/h"), answering("b", 9, 11, "m/s", shift=1.0)
-    found = compare(mine, other, "1 km/h", feeds={"A": "y"}, **SIZE)
-    (each,) = found.forecasts
-    assert found.runs == 3
-    assert found.source.model.path.name == "b.xlsx"
+    result = compare(mine, other, "1 km/h", feeds={"A": "y"}, **SIZE)
+    (each,) = result.forecasts
+    assert result.runs == 3
+    assert result.source.model.path.name == "b.xlsx"
     for number, expected in ((each.difference.mean, 39.6), (each.difference.standard_deviation, 7.2 * 12**-0.5)):
         # the second is drawn from 20,000 trials, which have an error of their own
         assert abs(number.second.value - expected) < 4 * 2**0.5 * number.second.error
     assert each.judgement.verdict is Verdict.BEYOND
-    assert verdict_text(found)[0].startswith("a.xlsx without b.xlsx is not enough for y to 1 km/h: the upper end")
+    assert verdict_text(result)[0].startswith("a.xlsx without b.xlsx is not enough for y to 1 km/h: the upper end")
 
 
 def test_time_and_distance_need_no_model_of_the_impact_where_every_speed_gives_one_answer(filled_in, momentum):
     """At 25 mph the driver stops in time, whatever the speed at the impact was; the speed before braking needs it."""
     rough = filled_in("time-distance", {"v_impact": (25, 45), "limit": 25})
-    found = compare(rough, momentum, feeds={"Vehicle speed at the impact": "Chevrolet impact speed"}, **SIZE)
-    verdicts = {each.first.name: each.judgement.verdict for each in found.forecasts}
+    result = compare(rough, momentum, feeds={"Vehicle speed at the impact": "Chevrolet impact speed"}, **SIZE)
+    verdicts = {each.first.name: each.judgement.verdict for each in result.forecasts}
     assert verdicts["Same driver: avoided, at most (1 = yes)"] is Verdict.WITHIN
     assert verdicts["Vehicle speed before braking"] is Verdict.BEYOND
-    assert "time-distance.xlsx without intersection-momentum.xlsx is enough for " in verdict_text(found)[0]
+    assert "time-distance.xlsx without intersection-momentum.xlsx is enough for " in verdict_text(result)[0]
 
 
 @pytest.mark.parametrize(
@@ -95,9 +95,9 @@ def test_several_assumptions_are_drawn_from_the_same_trial(joint):
     """Both answers are nearly one number: their difference hardly varies, though each of them does. By both engines."""
     first = joint("a", "=B2-B3+0*B4", "=B2+B3", "=B2", "=B3+B4*0", correlations=[("v", "w", -0.9)])
     source = joint("b", "=B2^2", "=B2^2+B3/100", "=IF(B4<0.1,NA(),1)")
-    found = compare(first, source, feeds={"v": "y0", "w": "y1"}, engine="jit", **SIZE)
+    result = compare(first, source, feeds={"v": "y0", "w": "y1"}, engine="jit", **SIZE)
     for each, mean, sd in zip(
-        found.forecasts,
+        result.forecasts,
         (-0.005, 2 / 3 + 0.005, 1 / 3, 1 / 3 + 0.005),
         (0.01 * 12**-0.5, 2 * (4 / 45) ** 0.5, (4 / 45) ** 0.5, (4 / 45) ** 0.5),
         strict=True,

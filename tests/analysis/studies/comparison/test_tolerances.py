@@ -38,9 +38,9 @@ BOTH = [SPEED, ANGLE]
     ],
 )
 def test_tolerances_as_typed(texts, speed, angle):
-    found = read_tolerances(texts, BOTH)
-    assert found.of(SPEED, 2.0) == (pytest.approx(speed[0]), speed[1])
-    assert found.of(ANGLE, 2.0) == (pytest.approx(angle[0]), angle[1])
+    result = read_tolerances(texts, BOTH)
+    assert result.of(SPEED, 2.0) == (pytest.approx(speed[0]), speed[1])
+    assert result.of(ANGLE, 2.0) == (pytest.approx(angle[0]), angle[1])
 
 
 @pytest.mark.parametrize(
@@ -95,14 +95,14 @@ def test_one_number_beyond_is_enough_and_all_must_be_within():
 
 @given(st.floats(0, 10), st.floats(1e-6, 10), st.floats(1e-3, 10))
 def test_as_many_trials_as_it_asks_for_decide_if_the_difference_is_what_it_seems(value, error, tolerance):
-    found = judge({"mean": (Estimate(value, error), tolerance)})
-    if found.verdict is not Verdict.UNDECIDED:
-        assert found.times == 1.0
-    elif math.isinf(found.times):
+    result = judge({"mean": (Estimate(value, error), tolerance)})
+    if result.verdict is not Verdict.UNDECIDED:
+        assert result.times == 1.0
+    elif math.isinf(result.times):
         assert 3 * error < 0.05 * tolerance
     else:
-        assert 1.0 <= found.times <= 9.0 * (1 + 1e-12)
-        later = judge({"mean": (Estimate(value, error / math.sqrt(found.times * 1.001)), tolerance)})
+        assert 1.0 <= result.times <= 9.0 * (1 + 1e-12)
+        later = judge({"mean": (Estimate(value, error / math.sqrt(result.times * 1.001)), tolerance)})
         assert later.verdict is not Verdict.UNDECIDED or abs(tolerance - value) <= error
 
 
@@ -121,17 +121,17 @@ def test_as_many_trials_as_it_asks_for_decide_if_the_difference_is_what_it_seems
     ],
 )
 def test_how_many_times_as_many_trials_decide(value, error, verdict, times):
-    found = judge({"mean": (Estimate(value, error), 0.5)})
-    assert (found.verdict.value, found.times) == (verdict, pytest.approx(times))
-    assert found.blind == (error is None or math.isnan(value))
+    result = judge({"mean": (Estimate(value, error), 0.5)})
+    assert (result.verdict.value, result.times) == (verdict, pytest.approx(times))
+    assert result.blind == (error is None or math.isnan(value))
 
 
 def test_times_and_blindness_are_of_the_numbers_that_make_the_verdict():
     near, within, blind = Estimate(0.375, 0.0625), Estimate(0.1, 0.01), Estimate(0.3, None)
-    found = judge({"a": (near, 0.5), "b": (Estimate(0.5, 0.0625), 0.5), "c": (within, 0.05)})
-    assert (found.largest, found.times, found.blind) == ("c", 1.0, False)
-    found = judge({"a": (near, 0.5), "b": (Estimate(0.5, 0.0625), 0.5), "c": (within, 0.5)})
-    assert (found.largest, found.times, found.blind) == ("b", 9.0, False)
+    result = judge({"a": (near, 0.5), "b": (Estimate(0.5, 0.0625), 0.5), "c": (within, 0.05)})
+    assert (result.largest, result.times, result.blind) == ("c", 1.0, False)
+    result = judge({"a": (near, 0.5), "b": (Estimate(0.5, 0.0625), 0.5), "c": (within, 0.5)})
+    assert (result.largest, result.times, result.blind) == ("b", 9.0, False)
     assert judge({"a": (blind, 0.5), "c": (Estimate(2.0, 0.01), 0.5)}).blind is False
     assert judge({"a": (blind, 0.5), "c": (near, 0.5)}).blind is True
     with pytest.raises(ValueError, match="no difference"):
@@ -166,7 +166,7 @@ def test_what_cannot_be_percentage_points(points):
 
 
 @pytest.mark.parametrize(
-    ("texts", "chance", "found"),
+    ("texts", "chance", "result"),
     [
         ([], None, (math.nan, False)),
         (["0.5"], None, (math.nan, False)),
@@ -177,8 +177,8 @@ def test_what_cannot_be_percentage_points(points):
         (["Chevy delta-V=0.03"], None, (0.03, True)),
     ],
 )
-def test_tolerances_of_shares(texts, chance, found):
-    assert read_tolerances(texts, BOTH).of_share(SPEED, 0.4, chance) == pytest.approx(found, nan_ok=True)
+def test_tolerances_of_shares(texts, chance, result):
+    assert read_tolerances(texts, BOTH).of_share(SPEED, 0.4, chance) == pytest.approx(result, nan_ok=True)
 
 
 def test_a_number_for_all_forecasts_is_refused_where_all_are_counted():

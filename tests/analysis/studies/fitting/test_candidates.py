@@ -99,14 +99,14 @@ def test_standard_errors_are_the_scatter_of_estimates(name):
     estimates, errors = [], []
     for _ in range(400):
         x = np.sort(oracle.rvs(200, random_state=random).astype(float))
-        found = candidate.estimate(x)
-        estimates.append(found)
+        result = candidate.estimate(x)
+        estimates.append(result)
         if len(errors) == 100:
             continue
         if candidate.errors is None:
-            errors.append(standard_errors(lambda p, x=x: candidate.log_likelihood(x, p), found, free))
+            errors.append(standard_errors(lambda p, x=x: candidate.log_likelihood(x, p), result, free))
         else:
-            errors.append(candidate.errors(x, found))
+            errors.append(candidate.errors(x, result))
     scatter = np.std(estimates, axis=0, ddof=1)
     stated = np.mean([[error or 0.0 for error in row] for row in errors], axis=0)
     tolerance = 0.25 if name in ("Uniform", "Pareto") else 0.15  # the extremes of a sample scatter with heavier tails
@@ -121,7 +121,9 @@ def test_the_bootstrap_of_the_triangular_is_the_scatter_of_estimates(monkeypatch
     samples = [np.sort(oracle.rvs(200, random_state=random)) for _ in range(40)]
     estimates = [candidate.estimate(x) for x in samples]
     scatter = np.std(estimates, axis=0, ddof=1)
-    stated = np.mean([candidate.errors(x, found) for x, found in zip(samples[:2], estimates[:2], strict=True)], axis=0)
+    stated = np.mean(
+        [candidate.errors(x, result) for x, result in zip(samples[:2], estimates[:2], strict=True)], axis=0
+    )
     np.testing.assert_allclose(stated, scatter, rtol=0.4)
 
 
@@ -131,5 +133,5 @@ def test_a_ridge_has_no_standard_errors():
 
 
 def test_standard_errors_of_a_parabola():
-    found = standard_errors(lambda p: -(p[0] ** 2) / 8 - (p[1] - 5) ** 2 / 0.02, (0.0, 5.0), [0, 1])
-    assert found == pytest.approx((2.0, 0.1), rel=1e-6)
+    result = standard_errors(lambda p: -(p[0] ** 2) / 8 - (p[1] - 5) ** 2 / 0.02, (0.0, 5.0), [0, 1])
+    assert result == pytest.approx((2.0, 0.1), rel=1e-6)

@@ -50,8 +50,8 @@ def test_densities_have_uniform_margins(density, parameters):
 def test_the_copula_that_drew_is_the_best_and_has_its_number(name, copula, key, wanted, turned):
     u = np.random.default_rng(7).random((2, 3_000))
     copula.join(u)
-    found = fit_columns({"a": u[0].tolist(), "b": (1.0 - u[1] if turned else u[1]).tolist()})
-    best = found.pairs[0].copulas[0]
+    result = fit_columns({"a": u[0].tolist(), "b": (1.0 - u[1] if turned else u[1]).tolist()})
+    best = result.pairs[0].copulas[0]
     assert best.name == name
     if name != "t":
         assert best.turned == turned
@@ -61,16 +61,16 @@ def test_the_copula_that_drew_is_the_best_and_has_its_number(name, copula, key, 
 
 def test_independent_columns_are_so():
     rng = np.random.default_rng(5)
-    found = fit_columns({"a": rng.normal(size=500).tolist(), "b": rng.normal(size=500).tolist()})
-    assert found.pairs[0].copulas[0].aic > -4.0
+    result = fit_columns({"a": rng.normal(size=500).tolist(), "b": rng.normal(size=500).tolist()})
+    assert result.pairs[0].copulas[0].aic > -4.0
 
 
 def test_columns_of_numbers_texts_and_gaps():
     data = measured()
     data["Speed"][5] = None
     data["Always"] = [1.0] * 200
-    found = fit_columns(data)
-    friction, speed, surface, always = found.columns
+    result = fit_columns(data)
+    friction, speed, surface, always = result.columns
     assert friction.best.name in (
         "Normal",
         "Logistic",
@@ -83,7 +83,7 @@ def test_columns_of_numbers_texts_and_gaps():
     assert speed.fitting.n == 199
     assert sum(each.value for each in surface.shares.values()) == pytest.approx(1.0)
     assert "equal" in always.why
-    (pair,) = found.pairs
+    (pair,) = result.pairs
     assert pair.n == 199
     exact = 60 * 0.05 / math.hypot(60 * 0.05, 2)
     assert abs(pair.correlation.value - 6 / math.pi * math.asin(exact / 2)) < 4 * pair.correlation.error
@@ -92,8 +92,8 @@ def test_columns_of_numbers_texts_and_gaps():
 
 
 def test_the_bootstrap_spreads_as_the_likelihood_says():
-    found = fit_columns({"x": np.random.default_rng(2).normal(10, 2, 400).tolist()}, bootstraps=300)
-    (column,) = found.columns
+    result = fit_columns({"x": np.random.default_rng(2).normal(10, 2, 400).tolist()}, bootstraps=300)
+    (column,) = result.columns
     assert column.best.name == "Normal"
     for heading, error in column.best.errors.items():
         assert column.repeated[heading].std() == pytest.approx(error, rel=0.25)

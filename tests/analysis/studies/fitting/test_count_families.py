@@ -45,8 +45,8 @@ def test_outside_of_its_ends_a_discrete_uniform_is_impossible():
 @pytest.mark.parametrize("size", [0, 1, 2, 3, 4, 5, 8, 50])
 def test_the_best_whole_number_is_found_wherever_it_is(least, size):
     for best in range(size + 1):
-        found = _best_whole(lambda value, best=best: -abs(value - least - best), least, least + size)
-        assert found == least + best
+        result = _best_whole(lambda value, best=best: -abs(value - least - best), least, least + size)
+        assert result == least + best
 
 
 def likelihood(law, x):
@@ -74,7 +74,7 @@ def test_the_whole_number_is_the_likeliest_of_all(seed):
 
 
 @pytest.mark.parametrize(
-    ("name", "x", "found"),
+    ("name", "x", "result"),
     [
         ("Poisson", [0.0, 2.0, 4.0], (2.0,)),
         ("Geometric", [1.0, 2.0, 3.0], (0.5,)),
@@ -82,8 +82,8 @@ def test_the_whole_number_is_the_likeliest_of_all(seed):
         ("Discrete Uniform", [2.0, 5.0, 9.0], (2.0, 9.0)),
     ],
 )
-def test_closed_forms(name, x, found):
-    assert FAMILIES[name].estimate(np.array(x)) == pytest.approx(found)
+def test_closed_forms(name, x, result):
+    assert FAMILIES[name].estimate(np.array(x)) == pytest.approx(result)
 
 
 @pytest.mark.parametrize(

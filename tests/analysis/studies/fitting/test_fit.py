@@ -82,9 +82,9 @@ def test_a_large_sample_finds_its_family(name, few_bootstrap_samples):
     """By BIC, which also tells a family from a wider one that contains it."""
     oracle, truth = TRUTHS[name]
     n = 2 * N if name in HARD_TO_TELL else N
-    found = fit(oracle.rvs(n, random_state=np.random.default_rng(999)), by="bic")
-    best = found.fits[0]
-    assert best.name == name, [each.name for each in found.fits[:3]]
+    result = fit(oracle.rvs(n, random_state=np.random.default_rng(999)), by="bic")
+    best = result.fits[0]
+    assert best.name == name, [each.name for each in result.fits[:3]]
     assert best.parameters.keys() == truth.keys()
     for heading, value in truth.items():
         error = best.errors[heading]
@@ -97,11 +97,11 @@ def test_a_large_sample_finds_its_family(name, few_bootstrap_samples):
 
 @pytest.mark.parametrize("by", CRITERIA)
 def test_ranking(by):
-    found = fit(stats.gamma(3).rvs(500, random_state=np.random.default_rng(2)), by=by)
-    figures = [getattr(each, by) for each in found.fits]
+    result = fit(stats.gamma(3).rvs(500, random_state=np.random.default_rng(2)), by=by)
+    figures = [getattr(each, by) for each in result.fits]
     assert figures == sorted(figures)
-    assert found.by == by
-    assert found.fits[0].name in ("Gamma", "Weibull", "Lognormal", "Maximum Extreme")
+    assert result.by == by
+    assert result.fits[0].name in ("Gamma", "Weibull", "Lognormal", "Maximum Extreme")
 
 
 def test_criteria_are_what_they_are_called():
@@ -160,10 +160,10 @@ def test_the_order_and_the_scale_of_the_values_do_not_matter():
 @pytest.mark.parametrize("n", [2, 5, 16])
 def test_small_samples_are_fitted_without_a_fault(n, few_bootstrap_samples):
     """With the errors of the fewest."""
-    found = fit(np.random.default_rng(n).normal(0.75, 0.05, n), errors=n == 2)
-    assert found.n == n
-    assert len(found.fits) >= 5
-    assert all(np.isfinite(each.aic) for each in found.fits)
+    result = fit(np.random.default_rng(n).normal(0.75, 0.05, n), errors=n == 2)
+    assert result.n == n
+    assert len(result.fits) >= 5
+    assert all(np.isfinite(each.aic) for each in result.fits)
 
 
 def test_ties_and_rounded_values_are_fitted_without_a_fault():
@@ -252,15 +252,15 @@ FAR_FROM_0 = {
 @pytest.mark.parametrize("name", FAR_FROM_0)
 def test_rounded_parameters_give_the_same_distribution_far_from_0(name):
     values = np.sort(FAR_FROM_0[name])
-    found = fit(values, kind="continuous", errors=False)
-    assert len(found.fits) > 3
-    for fitted in found.fits:
+    result = fit(values, kind="continuous", errors=False)
+    assert len(result.fits) > 3
+    for fitted in result.fits:
         texts = parameter_texts(fitted)
         read = {heading: float(text) for heading, text in texts.items()}
         shares = share_at_most(replace(fitted, parameters=read), values)
         assert shares == pytest.approx(share_at_most(fitted, values), abs=2e-4), (fitted.name, texts)
     middle = float(np.median(values))
-    assert rounded_value(found.fits[0], middle) == pytest.approx(middle, abs=1e-3 * (values[-1] - values[0]))
+    assert rounded_value(result.fits[0], middle) == pytest.approx(middle, abs=1e-3 * (values[-1] - values[0]))
 
 
 def test_parameters_and_the_base_value_have_six_digits_where_these_are_enough():

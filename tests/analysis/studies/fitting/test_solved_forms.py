@@ -10,8 +10,8 @@ from xlmc.analysis.studies.fitting.solved_forms import maximise, root
 
 
 def test_the_top_of_a_hill():
-    found = maximise(lambda p: -((p[0] - 3) ** 2) - 5 * (p[1] + 2 - p[0]) ** 2, [0.0, 0.0])
-    np.testing.assert_allclose(found, [3, 1], atol=1e-5)
+    result = maximise(lambda p: -((p[0] - 3) ** 2) - 5 * (p[1] + 2 - p[0]) ** 2, [0.0, 0.0])
+    np.testing.assert_allclose(result, [3, 1], atol=1e-5)
 
 
 def test_a_hill_without_a_top():

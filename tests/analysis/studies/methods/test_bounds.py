@@ -160,8 +160,8 @@ def test_very_many_assumptions(book):
 
 def accepted_forecast(model, name, point):
     """The forecast that the workbook gives at a point, and whether it accepts that."""
-    found = Evaluation(model)(np.array([[point[a.name] for a in model.live]]))
-    return found.forecasts[0, [f.name for f in model.forecasts].index(name)], found.accepted[0]
+    result = Evaluation(model)(np.array([[point[a.name] for a in model.live]]))
+    return result.forecasts[0, [f.name for f in model.forecasts].index(name)], result.accepted[0]
 
 
 def test_every_optimised_end_names_a_point_that_the_workbook_accepts(case_study, searched):

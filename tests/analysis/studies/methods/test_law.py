@@ -53,10 +53,10 @@ def test_trials_keep_the_tolerance(law, tolerance, trials):
 
 @pytest.mark.parametrize("slope", [-0.5, -0.8, -1.0, -1.4])
 def test_a_steeper_law_is_found_again(slope):
-    found = _fit_law(ladder(3.0, slope), KIND, 0.01, may_be_steeper=True)
-    assert (found.constant, found.slope) == (pytest.approx(3.0), pytest.approx(slope))
-    assert found.least == 100.0
-    assert found.error == pytest.approx((4 * 2 * 24) ** -0.5 / -slope)
+    result = _fit_law(ladder(3.0, slope), KIND, 0.01, may_be_steeper=True)
+    assert (result.constant, result.slope) == (pytest.approx(3.0), pytest.approx(slope))
+    assert result.least == 100.0
+    assert result.error == pytest.approx((4 * 2 * 24) ** -0.5 / -slope)
 
 
 def test_slopes_have_limits():
@@ -73,18 +73,18 @@ def test_a_slope_counts_as_steeper_beyond_three_errors(errors, steeper):
     """The slope's error is that of a line through logarithms with variance 1/(2(n − 1)) each."""
     across = np.log([100.0, 1_000.0, 10_000.0, 100_000.0])
     error = (2 * 24 * np.sum((across - across.mean()) ** 2)) ** -0.5
-    found = _fit_law(ladder(3.0, -0.5 - errors * error), KIND, 0.0, may_be_steeper=True)
-    assert (found.slope < -0.5) is steeper
+    result = _fit_law(ladder(3.0, -0.5 - errors * error), KIND, 0.0, may_be_steeper=True)
+    assert (result.slope < -0.5) is steeper
 
 
 def test_runs_that_lie_on_no_line_give_the_need_between_their_neighbours():
     budgets, values = (100, 1_000, 10_000), (1.0, 1.0, 1e-3)
     lengths = [runs(budget, value) for budget, value in zip(budgets, values, strict=True)]
-    found = _fit_law(lengths, KIND, 0.1, may_be_steeper=False)
+    result = _fit_law(lengths, KIND, 0.1, may_be_steeper=False)
     between = _trials_between(np.array(budgets, float), Z * np.array(values) / 0.1)
-    assert found.trials(0.1) == pytest.approx(between)
+    assert result.trials(0.1) == pytest.approx(between)
     assert 1_000 < between < 10_000
-    assert found.error == pytest.approx((2 * 24) ** -0.5 * 2)
+    assert result.error == pytest.approx((2 * 24) ** -0.5 * 2)
     assert _fit_law(lengths, KIND, 0.0, may_be_steeper=False).trials(0.1) != pytest.approx(between)
 
 
@@ -107,8 +107,8 @@ def test_numbers_that_are_never_off():
     assert _exact_from(lengths, KIND) == 1_000.0
     assert _exact_from(lengths[:1], KIND) is None
     assert _exact_from([lengths[1], lengths[0]], KIND) is None
-    found = _fit_law(lengths, KIND, 0.1, may_be_steeper=True)
-    assert (found.constant, found.trials(1e-9)) == (0.0, 1_000.0)
+    result = _fit_law(lengths, KIND, 0.1, may_be_steeper=True)
+    assert (result.constant, result.trials(1e-9)) == (0.0, 1_000.0)
     alone = [runs(100, 1.0, n=1), runs(1_000, 0.5, n=1)]
     assert math.isnan(_fit_law(alone, KIND, 0.1, may_be_steeper=True).constant)
 
@@ -121,9 +121,9 @@ def test_of_independent_trials_theory_counts_unless_runs_contradict_it(theory):
 
 @pytest.mark.parametrize("ratio", [0.4, 2.0])
 def test_clear_contradictions_are_believed(ratio):
-    found = _law_of_independent(ladder(2.0 * ratio, -0.5), KIND, 2.0, 0.1)
-    assert found.constant == pytest.approx(2.0 * ratio)
-    assert (found.slope, found.least) == (-0.5, 100.0)
+    result = _law_of_independent(ladder(2.0 * ratio, -0.5), KIND, 2.0, 0.1)
+    assert result.constant == pytest.approx(2.0 * ratio)
+    assert (result.slope, result.least) == (-0.5, 100.0)
 
 
 def test_contradictions_are_those_of_chi_square():
@@ -131,8 +131,8 @@ def test_contradictions_are_those_of_chi_square():
     for probability, believed in ((2e-5, False), (0.5e-5, True)):
         for quantile in (stats.chi2.ppf(probability, 96), stats.chi2.isf(probability, 96)):
             ratio = math.sqrt(quantile / 96)
-            found = _law_of_independent(ladder(2.0 * ratio, -0.5), KIND, 2.0, 0.1)
-            assert (found.constant != 2.0) is believed
+            result = _law_of_independent(ladder(2.0 * ratio, -0.5), KIND, 2.0, 0.1)
+            assert (result.constant != 2.0) is believed
 
 
 def studied(tolerance, own=0.0, comparisons=4):
@@ -150,26 +150,26 @@ def studied(tolerance, own=0.0, comparisons=4):
 def test_a_floor_is_bounded_by_the_longest_runs(bias, own):
     n, budget, spread, constant = 24, 10_000, 0.03, 2.0
     lengths = [runs(budget, 0.0, n=n, bias=bias, spread=spread)]
-    found = _law_with_floor(studied(0.1, own), lengths, KIND, constant)
+    result = _law_with_floor(studied(0.1, own), lengths, KIND, constant)
     rare = 0.05 / 4 / 4
     noise = constant**2 / budget
     extra = [math.sqrt(max(spread**2 * (n - 1) / stats.chi2.isf(p, n - 1) - noise, 0.0)) for p in (rare, 1.0 - rare)]
     chance = stats.t.isf(rare, n - 1) * math.hypot(spread / math.sqrt(n), own)
-    assert found.floor_low == pytest.approx(math.hypot(max(abs(bias) - chance, 0.0), Z * extra[0]))
-    assert found.floor_high == pytest.approx(math.hypot(abs(bias) + chance, Z * extra[1]))
+    assert result.floor_low == pytest.approx(math.hypot(max(abs(bias) - chance, 0.0), Z * extra[0]))
+    assert result.floor_high == pytest.approx(math.hypot(abs(bias) + chance, Z * extra[1]))
     likely = math.sqrt(max(bias**2 - spread**2 / n - own**2, 0.0) + Z**2 * max(spread**2 - noise, 0.0))
-    assert found.floor == pytest.approx(min(max(likely, found.floor_low), found.floor_high))
-    assert (found.constant, found.slope, found.least) == (2.0, -0.5, 10_000)
+    assert result.floor == pytest.approx(min(max(likely, result.floor_low), result.floor_high))
+    assert (result.constant, result.slope, result.least) == (2.0, -0.5, 10_000)
 
 
 def test_only_run_lengths_that_could_show_a_floor_at_the_tolerance_are_looked_at():
     """1.96·2/√n is at most 0.1 from 1,537 trials on."""
     short, long = runs(1_000, 0.0, bias=9.0, spread=5.0), runs(2_000, 0.0, bias=0.5, spread=0.04)
-    found = _law_with_floor(studied(0.1), [short, long], KIND, 2.0)
+    result = _law_with_floor(studied(0.1), [short, long], KIND, 2.0)
     alone = _law_with_floor(studied(0.1), [long], KIND, 2.0)
-    assert (found.floor, found.floor_low, found.floor_high) == (alone.floor, alone.floor_low, alone.floor_high)
+    assert (result.floor, result.floor_low, result.floor_high) == (alone.floor, alone.floor_low, alone.floor_high)
     both = _law_with_floor(studied(0.2), [short, long], KIND, 2.0)
-    assert both.floor_high > found.floor_high
+    assert both.floor_high > result.floor_high
     assert math.isnan(_law_with_floor(studied(0.1), [runs(100, 1.0, n=1)], KIND, 2.0).constant)
 
 
@@ -184,20 +184,20 @@ def test_only_run_lengths_that_could_show_a_floor_at_the_tolerance_are_looked_at
     ],
 )
 def test_root_mean_squares(errors, reference, value, bias, spread):
-    found = rms_of(errors, reference)
-    assert (found.value, found.bias, found.spread) == pytest.approx((value, bias, spread))
+    result = rms_of(errors, reference)
+    assert (result.value, result.bias, result.spread) == pytest.approx((value, bias, spread))
     count = np.count_nonzero(~np.isnan(errors))
-    assert found.n == count
-    assert found.error == pytest.approx(value / math.sqrt(2 * (count - 1)))
-    low, high = found.interval
+    assert result.n == count
+    assert result.error == pytest.approx(value / math.sqrt(2 * (count - 1)))
+    low, high = result.interval
     assert low == pytest.approx(value * math.sqrt((count - 1) / stats.chi2.ppf(0.975, count - 1)))
     assert high == pytest.approx(value * math.sqrt((count - 1) / stats.chi2.ppf(0.025, count - 1)))
 
 
 def test_a_single_answer_is_known_as_well_as_the_reference():
-    found = rms_of([-2.0], 0.5)
-    assert (found.value, found.error, found.bias, found.n) == (2.0, 0.5, -2.0, 1)
-    assert found.interval == pytest.approx((2.0 - 0.5 * Z, 2.0 + 0.5 * Z))
+    result = rms_of([-2.0], 0.5)
+    assert (result.value, result.error, result.bias, result.n) == (2.0, 0.5, -2.0, 1)
+    assert result.interval == pytest.approx((2.0 - 0.5 * Z, 2.0 + 0.5 * Z))
     assert rms_of([0.1], 0.5).interval == pytest.approx((0.0, 0.1 + 0.5 * Z))
     assert rms_of([math.nan]).n == 0
 

@@ -58,7 +58,7 @@ def test_seconds_of_a_run(trials, seconds):
 
 
 @pytest.mark.parametrize(
-    ("seconds", "found"),
+    ("seconds", "result"),
     [
         ({"a": 10.0, "b": 12.0, "c": 12.01, "d": 9.9999}, "da"),
         ({"a": 10.0, "b": 12.0, "c": 12.01}, "ab"),
@@ -66,8 +66,8 @@ def test_seconds_of_a_run(trials, seconds):
         ({"a": 0.5, "b": 0.6, "c": 0.61}, "ab"),
     ],
 )
-def test_methods_within_a_fifth_or_a_tenth_of_a_second_tie(seconds, found):
-    assert "".join(tied(seconds)) == found
+def test_methods_within_a_fifth_or_a_tenth_of_a_second_tie(seconds, result):
+    assert "".join(tied(seconds)) == result
 
 
 @pytest.mark.parametrize(
@@ -102,8 +102,8 @@ def with_errors(curve, change):
     return replace(curve, lengths=lengths)
 
 
-def curve_of(found, key):
-    return next(curve for curve in (*found.once, *found.curves, *found.engines) if curve.method.key == key)
+def curve_of(result, key):
+    return next(curve for curve in (*result.once, *result.curves, *result.engines) if curve.method.key == key)
 
 
 @pytest.mark.parametrize("key", CONSISTENT)
@@ -114,10 +114,10 @@ def test_no_noise_makes_a_method_that_converges_seem_not_to(small, key):
         value = abs(each.value) * 4.0**place
         return Rms(value, value / 2, value, value / 4, each.n)
 
-    found = need(small, with_errors(curve_of(small, key), grown))
-    assert found.reaches == "yes"
-    assert np.isfinite(found.trials)
-    assert np.isfinite(found.seconds)
+    result = need(small, with_errors(curve_of(small, key), grown))
+    assert result.reaches == "yes"
+    assert np.isfinite(result.trials)
+    assert np.isfinite(result.seconds)
 
 
 def test_of_independent_trials_theory_counts_and_not_the_noise_of_few_runs(small):
@@ -158,13 +158,13 @@ def test_a_floor_is_found_where_there_is_one_and_left_open_where_runs_are_few(sm
 def test_the_parts_of_a_miss_are_measured(small):
     """Without filters the mean is 8.897 mph, with them 4.742 (2·10⁹ trials made independently of this project)."""
     first = curve_of(small, "taylor-1")
-    found = replace(
+    result = replace(
         worst_error(small, first), statistic="mean", error=first.lengths[0].errors["Nissan impact speed", "mean"].bias
     )
-    parts = parts_of(small, found)
+    parts = parts_of(small, result)
     assert parts.filters == pytest.approx(8.897 - 4.742, abs=0.06)
     assert parts.formulas == pytest.approx(-0.03, abs=0.03)
-    assert parts.filters + parts.formulas == pytest.approx(found.error)
+    assert parts.filters + parts.formulas == pytest.approx(result.error)
 
 
 def test_filters_that_hardly_reject_are_not_blamed_for_curvature(book):
@@ -175,11 +175,11 @@ def test_filters_that_hardly_reject_are_not_blamed_for_curvature(book):
         {"y": "B1"},
         {"not the last": {"cell": "C1", "below": 0.999}},
     )
-    found = study(model, reference_trials=1 << 16, trials=1 << 10, replicates=2)
-    first = curve_of(found, "taylor-1")
-    parts = parts_of(found, worst_error(found, first))
+    result = study(model, reference_trials=1 << 16, trials=1 << 10, replicates=2)
+    first = curve_of(result, "taylor-1")
+    parts = parts_of(result, worst_error(result, first))
     assert abs(parts.formulas) > 20.0 * abs(parts.filters)
-    (message,) = [each for each in recommendation(found) if each.startswith("Taylor, first order misses")]
+    (message,) = [each for each in recommendation(result) if each.startswith("Taylor, first order misses")]
     assert "because it takes every curve for straight" in message.split("; ")[-1]
 
 
@@ -188,9 +188,9 @@ def test_a_forecast_that_crosses_zero_is_asked_for_no_more_than_another(book):
     needs = []
     for middle in (0, 1_000):
         model = book({"A1": 0.0, "B1": f"=A1+{middle}"}, {"x": {"cell": "A1", "low": -1, "high": 1}}, {"y": "B1"})
-        found = study(model, reference_trials=1 << 16, trials=1 << 10, replicates=2)
-        assert found.tolerance("y") == pytest.approx(0.01 * 1.8, rel=1e-3)
-        needs.append(need(found, curve_of(found, "mc")).trials)
+        result = study(model, reference_trials=1 << 16, trials=1 << 10, replicates=2)
+        assert result.tolerance("y") == pytest.approx(0.01 * 1.8, rel=1e-3)
+        needs.append(need(result, curve_of(result, "mc")).trials)
     assert needs[0] == pytest.approx(needs[1], rel=1e-3)
     assert needs[0] < 20_000
 
@@ -223,14 +223,14 @@ def test_beyond_the_longest_run_a_trial_costs_what_it_cost_there(small):
     assert seconds_of(replace(small.curves[0], lengths=lengths), 5e9) == pytest.approx(250_000.0)
 
 
-def priced(found, seconds):
+def priced(result, seconds):
     """The study with runs that take so many seconds for the accuracy asked for, by method; the others take an hour."""
 
     def clocked(curve):
-        each = seconds.get(curve.method.key, 3_600.0) / need(found, curve).trials
+        each = seconds.get(curve.method.key, 3_600.0) / need(result, curve).trials
         return replace(curve, lengths=tuple(replace(runs, seconds=each * runs.budget) for runs in curve.lengths))
 
-    return replace(found, curves=tuple(map(clocked, found.curves)), engines=tuple(map(clocked, found.engines)))
+    return replace(result, curves=tuple(map(clocked, result.curves)), engines=tuple(map(clocked, result.engines)))
 
 
 RULE = [
@@ -248,8 +248,8 @@ RULE = [
 
 @pytest.mark.parametrize(("seconds", "chosen"), RULE, ids=lambda each: str(each).strip("{}").replace("'", ""))
 def test_what_is_recommended_costs_at_most_one_and_a_half_times_the_cheapest(small, seconds, chosen):
-    found = choice(priced(small, seconds))
-    assert found.chosen.method.key == chosen
+    result = choice(priced(small, seconds))
+    assert result.chosen.method.key == chosen
     costs = {key: each + 0.5 * ("/" in key) for key, each in seconds.items()}
     assert costs[chosen] <= max(1.5 * min(costs.values()), min(costs.values()) + 0.1)
 
@@ -282,13 +282,13 @@ def test_a_number_of_trials_that_no_run_had_is_given_with_its_error(small, monke
     assert ("as many trials as the longest measured runs had" in verdict) == (beyond == 1e4)
 
 
-def with_reach(found, reach):
+def with_reach(result, reach):
     """A Latin hypercube whose runs of 128, 512 … trials keep within so many tolerances, and what it then needs."""
-    curve = curve_of(found, "lhs")
+    curve = curve_of(result, "lhs")
     kind = ("Nissan impact speed", "mean")
 
     def runs_of(place, times):
-        value = times * found.tolerance(kind[0]) / 1.959964
+        value = times * result.tolerance(kind[0]) / 1.959964
         return replace(
             curve.lengths[-1],
             budget=128 * 4**place,
@@ -297,7 +297,7 @@ def with_reach(found, reach):
         )
 
     lengths = tuple(runs_of(place, times) for place, times in enumerate(reach))
-    return law(found, replace(curve, lengths=lengths), kind).trials(found.tolerance(kind[0]))
+    return law(result, replace(curve, lengths=lengths), kind).trials(result.tolerance(kind[0]))
 
 
 def test_runs_beside_a_jump_give_the_need_between_those_that_miss_and_those_that_keep(small):
@@ -312,12 +312,12 @@ def test_runs_beside_a_jump_give_the_need_between_those_that_miss_and_those_that
 
 
 def test_methods_of_a_study_tie(timed):
-    found = choice(timed)
-    least = min(each.seconds for each in found.needs.values() if each.usable)
-    for curve, each in found.needs.items():
+    result = choice(timed)
+    least = min(each.seconds for each in result.needs.values() if each.usable)
+    for curve, each in result.needs.items():
         if each.usable:
-            assert (curve in found.cheapest) == (each.seconds <= max(1.2 * least, least + 0.1))
-    assert found.chosen.method.key == "mc"
+            assert (curve in result.cheapest) == (each.seconds <= max(1.2 * least, least + 0.1))
+    assert result.chosen.method.key == "mc"
     other = choice(replace(timed, accuracy=("0.001%", 1e-5, True)))
     seconds = {curve.method.key: each.seconds for curve, each in other.needs.items() if each.usable}
     assert 2.0 * min(seconds.values()) < seconds["mc"]

@@ -28,8 +28,8 @@ CASES = [
 
 @pytest.mark.parametrize(("quantile", "p", "tolerance"), CASES)
 def test_95_of_100_runs_keep_the_tolerance(quantile, p, tolerance):
-    found = quantile_need(quantile(SHARES), p, tolerance, SIZE, gain=0.01)
-    trials, runs = round(found.trials), 2_000
+    result = quantile_need(quantile(SHARES), p, tolerance, SIZE, gain=0.01)
+    trials, runs = round(result.trials), 2_000
     generator = np.random.default_rng(3)
     below = np.floor(p * (trials - 1)) + 1  # the percentile of uniforms is a beta variable
     shares = generator.beta(below, trials - below + 1, size=runs)
@@ -39,9 +39,9 @@ def test_95_of_100_runs_keep_the_tolerance(quantile, p, tolerance):
 
 def test_the_density_decides_where_it_is_constant():
     """c = sqrt(p (1 - p)) / f, n = (1.96 c / tolerance)^2."""
-    found = quantile_need(ndtri(SHARES), 0.245, 0.01, SIZE, gain=0.01)
+    result = quantile_need(ndtri(SHARES), 0.245, 0.01, SIZE, gain=0.01)
     density = np.exp(-(ndtri(0.245) ** 2) / 2) / np.sqrt(2 * np.pi)
-    assert found.trials == pytest.approx((1.959964 / 0.01) ** 2 * 0.245 * 0.755 / density**2, rel=0.03)
+    assert result.trials == pytest.approx((1.959964 / 0.01) ** 2 * 0.245 * 0.755 / density**2, rel=0.03)
 
 
 def test_a_reference_that_is_too_short_says_nothing():

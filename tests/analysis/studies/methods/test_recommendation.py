@@ -23,8 +23,8 @@ def curve(name, errors="once"):
     ],
 )
 def test_methods_that_need_no_draws(methods, expected):
-    found = _once_text([(curve(name), SimpleNamespace(reaches=reaches)) for name, reaches in methods])
-    assert found == [f"{text}; only the reference shows that." for text in expected]
+    result = _once_text([(curve(name), SimpleNamespace(reaches=reaches)) for name, reaches in methods])
+    assert result == [f"{text}; only the reference shows that." for text in expected]
 
 
 @pytest.mark.parametrize(("names", "text"), [("a", "a"), ("ab", "a and b"), ("abc", "a, b and c")])

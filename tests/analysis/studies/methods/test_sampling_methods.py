@@ -55,12 +55,12 @@ def test_the_grid_halves_the_error_of_the_case_study(case_study):
 
 def test_the_grid_is_unbiased_where_the_answer_is_known(halved):
     """y = x² kept where x is above a half: mean 7/12, variance 1/5 · 31/16 − (7/12)²; 49 runs of 4,096 trials."""
-    found = [ImportanceGrid().run(halved, 4_096, seed) for seed in range(49)]
+    result = [ImportanceGrid().run(halved, 4_096, seed) for seed in range(49)]
     mean, sd = 7 / 12, (31 / 80 - (7 / 12) ** 2) ** 0.5
-    errors = np.array([each.answers["y"].mean for each in found]) - mean
+    errors = np.array([each.answers["y"].mean for each in result]) - mean
     assert abs(errors.mean()) < 5 * errors.std() / 7
     assert errors.std() < 1.3 * sd / (2_048 * 0.5) ** 0.5
-    accepted = np.array([each.acceptance for each in found])
+    accepted = np.array([each.acceptance for each in result])
     assert abs(accepted.mean() - 0.5) < 5 * accepted.std() / 7
 
 
@@ -97,8 +97,8 @@ def test_the_grid_respects_correlations(book):
         correlations={("a", "b"): 0.8},
     )
     plain = simulated(model, 1 << 18, 3)["S"].mean
-    found = ImportanceGrid().run(model, 1 << 16, 3).answers["S"].mean
-    assert abs(found - plain.value) < 5 * np.hypot(plain.error, 2 * plain.error)
+    result = ImportanceGrid().run(model, 1 << 16, 3).answers["S"].mean
+    assert abs(result - plain.value) < 5 * np.hypot(plain.error, 2 * plain.error)
 
 
 def test_nothing_to_learn_from(book):
@@ -148,9 +148,9 @@ def test_the_surrogate_draws_correlated_assumptions(book):
         {"f": "C1"},
         correlations={("a", "b"): 0.5},
     )
-    found = Surrogate().run(model, 1 << 16, 1).answers["f"]
+    result = Surrogate().run(model, 1 << 16, 1).answers["f"]
     rho = 2 * np.sin(np.pi / 12)
-    assert found.mean == pytest.approx(rho, abs=5 * (1 + rho**2) ** 0.5 / 256)
+    assert result.mean == pytest.approx(rho, abs=5 * (1 + rho**2) ** 0.5 / 256)
 
 
 def test_draws_that_are_none_are_left_out_of_the_surrogate(book):
@@ -160,11 +160,11 @@ def test_draws_that_are_none_are_left_out_of_the_surrogate(book):
         {"a": {"cell": "A1", "low": 0, "high": 1}, "b": {"cell": "B1", "low": 0.2, "high": "A1"}},
         {"f": "C1"},
     )
-    found = Surrogate().run(model, 40_000, 1)
-    assert found.acceptance == pytest.approx(0.8, abs=5 * (0.16 / 40_000) ** 0.5)
+    result = Surrogate().run(model, 40_000, 1)
+    assert result.acceptance == pytest.approx(0.8, abs=5 * (0.16 / 40_000) ** 0.5)
     plain = MONTE_CARLO.run(model, 40_000, 2)
     assert plain.acceptance == pytest.approx(0.8, abs=5 * (0.16 / 40_000) ** 0.5)
-    assert found.answers["f"].mean == pytest.approx(plain.answers["f"].mean, abs=0.02)
+    assert result.answers["f"].mean == pytest.approx(plain.answers["f"].mean, abs=0.02)
 
 
 def test_an_engine_that_is_not_there(case_study):

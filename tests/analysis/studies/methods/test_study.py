@@ -113,22 +113,22 @@ def test_the_command_is_one_for_this_workbook(small):
 def test_need_follows_the_square_root(small):
     """Half the accuracy asked for is a fourth of the trials, where errors fall with their square root."""
     plain = next(curve for curve in small.curves if curve.method.key == "mc")
-    found = need(small, plain)
-    assert found.statistic in STATISTICS
-    assert found.trials > small.ladder[-1]
-    assert found.seconds > 0.0
-    value, low, high = reach_of(small, plain, plain.lengths[-1], (found.forecast, found.statistic))
+    result = need(small, plain)
+    assert result.statistic in STATISTICS
+    assert result.trials > small.ladder[-1]
+    assert result.seconds > 0.0
+    value, low, high = reach_of(small, plain, plain.lengths[-1], (result.forecast, result.statistic))
     assert 1.0 < low < value < high
 
 
 def test_without_filters_the_differential_method_may_do(straight):
-    found = study(straight, accuracy="2%", reference_trials=1 << 16, trials=1 << 12, replicates=3)
-    assert found.reference.sampling == "sobol"
-    text = "\n".join(recommendation(found))
+    result = study(straight, accuracy="2%", reference_trials=1 << 16, trials=1 << 12, replicates=3)
+    assert result.reference.sampling == "sobol"
+    text = "\n".join(recommendation(result))
     assert "Taylor, first order and Taylor, second order are near enough, and need no draws at all" in text
-    first = next(curve for curve in found.once if curve.method.key == "taylor-1")
-    assert worst_error(found, first).times < 1.0
-    sobol, plain = (next(c for c in found.curves if c.method.key == key) for key in ("sobol", "mc"))
+    first = next(curve for curve in result.once if curve.method.key == "taylor-1")
+    assert worst_error(result, first).times < 1.0
+    sobol, plain = (next(c for c in result.curves if c.method.key == key) for key in ("sobol", "mc"))
     assert sobol.lengths[-1].shares["mean"] < 0.2 * plain.lengths[-1].shares["mean"]
 
 
@@ -138,33 +138,33 @@ def of_straight(book):
 
 
 def test_nothing_is_said_of_filters_where_there_are_none(of_straight):
-    found = of_straight
-    assert all("filters" not in sentence for _, sentence in methods_tables.cannot_lines(found))
-    assert dict(methods_tables.cannot_lines(found))["Taylor, first order"].startswith("takes every curve for straight")
-    assert not any(sentence.endswith(".") for _, sentence in methods_tables.cannot_lines(found))
+    result = of_straight
+    assert all("filters" not in sentence for _, sentence in methods_tables.cannot_lines(result))
+    assert dict(methods_tables.cannot_lines(result))["Taylor, first order"].startswith("takes every curve for straight")
+    assert not any(sentence.endswith(".") for _, sentence in methods_tables.cannot_lines(result))
 
 
 def test_independent_trials_are_carried_on_by_theory(of_straight):
     """Eight times more exact is 64 times as many trials, however the slope of two runs of each length came out."""
-    found = of_straight
-    plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
-    finer = replace(found, accuracy=("0.1%", 0.001, True))
-    assert need(finer, plain).trials == pytest.approx(64 * need(found, plain).trials, rel=0.02)  # whole counts
+    result = of_straight
+    plain = next(curve for curve in result.curves if curve.method is MONTE_CARLO)
+    finer = replace(result, accuracy=("0.1%", 0.001, True))
+    assert need(finer, plain).trials == pytest.approx(64 * need(result, plain).trials, rel=0.02)  # whole counts
 
 
 def test_ends_that_are_never_off_need_no_more_trials(book):
     """24.5 % and 75.5 % of a die are 2 and 5 in all but a few runs in millions: no error is not an unknown one."""
     die = {"cell": "A1", "distribution": "Discrete Uniform", "low": 1, "high": 6}
-    found = study(
+    result = study(
         book({"A1": 3, "B1": "=A1*2"}, {"die": die}, {"f": "B1"}),
         reference_trials=1 << 14,
         trials=1 << 13,
         replicates=2,
     )
-    plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
+    plain = next(curve for curve in result.curves if curve.method is MONTE_CARLO)
     assert plain.lengths[-1].errors["f", "low"].value == 0.0
-    assert np.isfinite(need(found, plain).trials)
-    assert not any("however many trials" in sentence for sentence in recommendation(found))
+    assert np.isfinite(need(result, plain).trials)
+    assert not any("however many trials" in sentence for sentence in recommendation(result))
 
 
 def test_the_command_runs_what_is_recommended(book):
@@ -175,8 +175,8 @@ def test_the_command_runs_what_is_recommended(book):
         {"x": {"cell": "A1", **uniform}, "z": {"cell": "A2", **uniform}},
         {"y": "B1"},
     )
-    found = study(model, accuracy="0.003%", reference_trials=1 << 18, trials=1 << 14, replicates=4)
-    (sentence,) = [paragraph for paragraph in recommendation(found) if paragraph.startswith("Recommended")]
+    result = study(model, accuracy="0.003%", reference_trials=1 << 18, trials=1 << 14, replicates=4)
+    (sentence,) = [paragraph for paragraph in recommendation(result) if paragraph.startswith("Recommended")]
     assert sentence.startswith("Recommended: Scrambled Sobol")
     assert "--sampling sobol`" in sentence
 
@@ -193,9 +193,9 @@ def test_errors_in_cells_are_warned_of(book):
 
 
 def test_accuracy_in_units(straight):
-    found = study(straight, accuracy="0.5", reference_trials=1 << 14, trials=1 << 10, replicates=2)
-    assert found.tolerance("y") == 0.5
-    sentence = recommendation(found)
+    result = study(straight, accuracy="0.5", reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    assert result.tolerance("y") == 0.5
+    sentence = recommendation(result)
     assert sentence[0].startswith("Recommended: ")
     assert "each known to within 0.5 in its units, in 95 of 100 runs" in sentence[1]
     assert any("--precision 0.5 --precision-of mean,sd,range`" in each for each in sentence)
@@ -235,8 +235,8 @@ def test_a_forecast_whose_errors_cannot_be_squared(book):
 
 def test_exact_numbers_of_the_reference_are_shown_exactly(book):
     model = book({"A1": 1.5, "B1": "=A1*0+2.25"}, {"x": {"cell": "A1", "low": 1, "high": 2}}, {"y": "B1"})
-    found = study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2)
-    assert methods_tables.reference_table(found).rows == (("y", "", "2.25", "0", "2.25", "2.25"),)
+    result = study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    assert methods_tables.reference_table(result).rows == (("y", "", "2.25", "0", "2.25", "2.25"),)
 
 
 def test_a_method_that_cannot_be_used_is_named(book):
@@ -245,8 +245,8 @@ def test_a_method_that_cannot_be_used_is_named(book):
         {"a": {"cell": "A1", "low": 0, "high": 1}},
         {"f": "B1"},
     )
-    found = study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2)
-    assert "is a quadratic polynomial" in found.absent["Surrogate, exact filter"]
+    result = study(model, reference_trials=1 << 14, trials=1 << 10, replicates=2)
+    assert "is a quadratic polynomial" in result.absent["Surrogate, exact filter"]
 
 
 def test_nothing_is_drawn(book):
@@ -256,15 +256,15 @@ def test_nothing_is_drawn(book):
 
 def test_a_mean_that_does_not_converge_is_asked_of_no_method(book):
     model = book({"A1": 0.5, "B1": "=1/A1"}, {"a": {"cell": "A1", "low": -1, "high": 1}}, {"f": "B1"})
-    found = study(model, reference_trials=1 << 17, trials=1 << 13, replicates=2)
-    assert found.reference.heavy == {"f": ("mean", "sd")}
-    sentence = recommendation(found)
+    result = study(model, reference_trials=1 << 17, trials=1 << 13, replicates=2)
+    assert result.reference.heavy == {"f": ("mean", "sd")}
+    sentence = recommendation(result)
     assert (
         "The mean and SD of f do not converge, as far as these trials show" in sentence[2]
     )  # a lognormal may look so too
     assert "more trials help no method" in sentence[2]
-    plain = next(curve for curve in found.curves if curve.method is MONTE_CARLO)
-    assert need(found, plain).statistic in ("low", "high")
+    plain = next(curve for curve in result.curves if curve.method is MONTE_CARLO)
+    assert need(result, plain).statistic in ("low", "high")
     assert np.isnan(plain.lengths[-1].shares["mean"])  # its error is no share of anything, and no slope is drawn of it
     assert plain.lengths[-1].shares["low"] < 1.0
 
@@ -276,10 +276,10 @@ def test_no_forecast(book):
 
 def test_root_mean_squares():
     errors = np.random.default_rng(1).normal(0.5, 2.0, 20_000)
-    found = rms_of([*errors, np.nan])
-    assert found.n == 20_000
-    assert found.value == pytest.approx((4 + 0.25) ** 0.5, rel=0.02)
-    assert found.bias == pytest.approx(0.5, abs=0.06)
+    result = rms_of([*errors, np.nan])
+    assert result.n == 20_000
+    assert result.value == pytest.approx((4 + 0.25) ** 0.5, rel=0.02)
+    assert result.bias == pytest.approx(0.5, abs=0.06)
     assert rms_of(np.random.default_rng(1).normal(3.0, 1.0, 50)).value == pytest.approx(10**0.5, rel=0.1)
     assert np.isnan(rms_of([np.nan]).value)
 
@@ -307,16 +307,16 @@ def test_an_interrupted_study_answers_by_the_shortest_runs(straight, at):
 
     before = signal.signal(signal.SIGINT, signal.default_int_handler)
     try:
-        found = study(straight, reference_trials=1 << 16, trials=1 << 17, replicates=8, tell=tell)
+        result = study(straight, reference_trials=1 << 16, trials=1 << 17, replicates=8, tell=tell)
     finally:
         signal.signal(signal.SIGINT, before)
-    assert found.ended.startswith("it was interrupted after ")
-    assert len(found.ladder) == 3
-    assert all(len(curve.lengths) == 3 for curve in found.curves)
-    assert "Recommended: " in "\n".join(recommendation(found))
-    assert methods_report(found, figures=False)
+    assert result.ended.startswith("it was interrupted after ")
+    assert len(result.ladder) == 3
+    assert all(len(curve.lengths) == 3 for curve in result.curves)
+    assert "Recommended: " in "\n".join(recommendation(result))
+    assert methods_report(result, figures=False)
     left_out = "the study was interrupted before it"
-    assert found.absent.get("Taylor, second order") == (left_out if at.startswith("Taylor") else None)
+    assert result.absent.get("Taylor, second order") == (left_out if at.startswith("Taylor") else None)
 
 
 def test_slopes():

@@ -73,7 +73,7 @@ THREE = (between("a", 0.0, 1.0), between("b", 0.0, 1.0), between("c", 0.0, 1.0))
 
 
 @pytest.mark.parametrize(
-    ("texts", "given", "found"),
+    ("texts", "given", "result"),
     [
         (["a + b + c = 1"], (0.5, 0.2, 0.3), (0.5, 0.2, 0.3)),
         (["a + b + c = 1"], (9.0, 0.2, 0.3), (0.5, 0.2, 0.3)),
@@ -83,9 +83,9 @@ THREE = (between("a", 0.0, 1.0), between("b", 0.0, 1.0), between("c", 0.0, 1.0))
         (["a = 0.1", "b = 0.2", "c = 0.3"], (9.0, 9.0, 9.0), (0.1, 0.2, 0.3)),
     ],
 )
-def test_equalities_compute_decisions_from_the_others(texts, given, found):
+def test_equalities_compute_decisions_from_the_others(texts, given, result):
     solved = Equalities.of(THREE, required(THREE, *texts))
-    assert solved.completed(given) == pytest.approx(found, abs=1e-12)
+    assert solved.completed(given) == pytest.approx(result, abs=1e-12)
     for each in required(THREE, *texts):
         assert each.holds_for(solved.completed(given))
 
@@ -148,9 +148,9 @@ def standing(goal=5.0, *slacks, excess=0.0):
     ],
 )
 def test_by_how_many_errors_requirements_hold(slacks, sureness, meets):
-    found = standing(5.0, *slacks)
-    assert found.sureness == pytest.approx(sureness)
-    assert found.meets is meets
+    result = standing(5.0, *slacks)
+    assert result.sureness == pytest.approx(sureness)
+    assert result.meets is meets
     assert not standing(math.nan, *slacks).meets
     assert standing(5.0, *slacks, excess=0.01).sureness == -math.inf
 

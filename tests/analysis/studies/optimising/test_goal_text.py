@@ -136,8 +136,8 @@ def test_goals(text, value):
     ],
 )
 def test_how_a_goal_is_written(text, kind, spread, units):
-    found = reader().goal(text, maximise=True).measure
-    assert (found.form.kind, found.spread, found.units) == (kind, spread, units)
+    result = reader().goal(text, maximise=True).measure
+    assert (result.form.kind, result.spread, result.units) == (kind, spread, units)
 
 
 def test_what_is_asked_twice_is_one_column():
@@ -169,10 +169,10 @@ def test_what_is_asked_twice_is_one_column():
 )
 def test_requirements(text, slack, strict, equal):
     made = reader()
-    found = made.requirement(text)
-    assert measured(found.slack, made).value == pytest.approx(slack)
-    assert (found.strict, found.equal) == (strict, equal)
-    assert found.text == text
+    result = made.requirement(text)
+    assert measured(result.slack, made).value == pytest.approx(slack)
+    assert (result.strict, result.equal) == (strict, equal)
+    assert result.text == text
 
 
 @pytest.mark.parametrize(
@@ -194,8 +194,8 @@ def test_requirements(text, slack, strict, equal):
     ],
 )
 def test_what_decisions_alone_decide(text, holds):
-    found = reader().requirement(text)
-    assert found.holds_for(VALUES) is holds
+    result = reader().requirement(text)
+    assert result.holds_for(VALUES) is holds
 
 
 @pytest.mark.parametrize(
@@ -257,10 +257,10 @@ def test_trials_without_a_number_count_for_nothing():
     goal = made.goal("2*mean of NPV + Order", maximise=True)
     column = X.copy()
     column[3:5] = np.nan
-    found = goal.measure.of(column[None], VALUES)
+    result = goal.measure.of(column[None], VALUES)
     rest = column[~np.isnan(column)]
-    assert found.value == pytest.approx(2 * rest.mean() + 7)
-    assert found.error == pytest.approx(2 * rest.std(ddof=1) / np.sqrt(rest.size), rel=0.01)
+    assert result.value == pytest.approx(2 * rest.mean() + 7)
+    assert result.error == pytest.approx(2 * rest.std(ddof=1) / np.sqrt(rest.size), rel=0.01)
     for few, known in ((1, False), (2, True)):
         column = np.full(X.size, np.nan)
         column[:few] = X[:few]

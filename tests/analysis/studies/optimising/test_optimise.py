@@ -65,34 +65,34 @@ def book(tmp_path):
 
 def test_what_is_told_of_the_best_is_a_run_of_the_workbook_with_its_values(book):
     model = xlmc.load(book())
-    found = model.optimise(maximise="mean of Profit", trials=2_000, seed=7)
+    result = model.optimise(maximise="mean of Profit", trials=2_000, seed=7)
     again = xlmc.load(book()).simulate(2_000, seed=7, keep_inputs=None).inputs["Demand"]
-    order = found.values["Order"]
+    order = result.values["Order"]
     profit = 5 * np.minimum(order, again) - 3 * order
-    assert np.allclose(found.run.forecasts["Profit"], profit, rtol=1e-12)
-    assert found.found.value == pytest.approx(profit.mean())
-    assert found.run.model.workbook.content(found.decisions[0].cell).value == order
-    assert found.search_seed != found.run.settings.seed
+    assert np.allclose(result.run.forecasts["Profit"], profit, rtol=1e-12)
+    assert result.estimate.value == pytest.approx(profit.mean())
+    assert result.run.model.workbook.content(result.decisions[0].cell).value == order
+    assert result.search_seed != result.run.settings.seed
 
 
 def test_requirements_hold_and_more_is_not_asked_than_that(book):
     """P5 of demand is 5, so that P5 of profit is 25 − 3·order: at least −70 allows 31 whole pieces."""
-    found = xlmc.load(book()).optimise(
+    result = xlmc.load(book()).optimise(
         maximise="mean of Profit", subject_to=["P5 of Profit >= -70", "2*Order <= 90"], trials=40_000
     )
-    assert found.values["Order"] in (31, 30)
-    asked, exact = found.requirements
+    assert result.values["Order"] in (31, 30)
+    asked, exact = result.requirements
     assert asked.chance > 0.95
-    assert abs(asked.found.value - (25 - 3 * found.best[0])) < 4 * asked.found.error
+    assert abs(asked.estimate.value - (25 - 3 * result.best[0])) < 4 * asked.estimate.error
     assert exact.exact
-    assert exact.found.value == 2 * found.best[0]
-    assert found.meets
+    assert exact.estimate.value == 2 * result.best[0]
+    assert result.meets
 
 
 def test_a_requirement_that_none_meets_is_told(book):
-    found = xlmc.load(book()).optimise(maximise="mean of Profit", subject_to=["P5 of Profit >= 100"], trials=500)
-    assert not found.meets
-    assert found.requirements[0].chance < 0.01
+    result = xlmc.load(book()).optimise(maximise="mean of Profit", subject_to=["P5 of Profit >= 100"], trials=500)
+    assert not result.meets
+    assert result.requirements[0].chance < 0.01
     with pytest.raises(SimulationError, match="No combination of the decisions meets"):
         xlmc.load(book()).optimise(maximise="mean of Profit", subject_to=["Order >= 101"], trials=500)
 
@@ -112,24 +112,26 @@ def test_jobs_and_repetition_change_no_bit(book, rows):
 def test_candidates_that_give_the_same_are_not_told_apart(book):
     """Demand is 200 at least, so that every order of the two is sold: the price decides alone."""
     rows = (["Order", "=Inputs!B6", None, None, None, "10; 10.001"], PRICE)
-    found = xlmc.load(book(*rows, demand=(200, 300))).optimise(maximise="mean of Profit", trials=500, indifference=0.01)
-    assert found.values["Price"] == 6
-    near = [each for each in found.rivals if each.candidate[1] == 6]
-    assert [each.candidate[0] for each in near] == [10.001 if found.best[0] == 10 else 10]
-    assert found.confidence > 0.99
+    result = xlmc.load(book(*rows, demand=(200, 300))).optimise(
+        maximise="mean of Profit", trials=500, indifference=0.01
+    )
+    assert result.values["Price"] == 6
+    near = [each for each in result.rivals if each.candidate[1] == 6]
+    assert [each.candidate[0] for each in near] == [10.001 if result.best[0] == 10 else 10]
+    assert result.confidence > 0.99
 
 
 def test_filters_that_leave_few_trials_need_more_of_them(book):
     """One of 500 trials has such a demand, 99.8 or more: all that is ordered is sold."""
     path = book(["Order", "=Inputs!B6", 0, 100, 25, None], filters=(["Great demand", "=Inputs!B2", 99.8],))
-    found = xlmc.load(path).optimise(maximise="mean of Profit", trials=20_000)
-    assert found.values == {"Order": 100}
-    assert found.confidence > 0.99
+    result = xlmc.load(path).optimise(maximise="mean of Profit", trials=20_000)
+    assert result.values == {"Order": 100}
+    assert result.confidence > 0.99
     nothing = book(["Order", "=Inputs!B6", 0, 100, 25, None], filters=(["Never", "=Inputs!B2", 101],))
-    found = xlmc.load(nothing).optimise(maximise="mean of Profit", trials=500)
-    assert math.isnan(found.found.value)
-    assert not found.meets
-    assert not found.rivals
+    result = xlmc.load(nothing).optimise(maximise="mean of Profit", trials=500)
+    assert math.isnan(result.estimate.value)
+    assert not result.meets
+    assert not result.rivals
 
 
 LOSING = "=2*Inputs!B6+0*SQRT(Inputs!B2-Inputs!B6)"
@@ -140,18 +142,18 @@ LOSING = "=2*Inputs!B6+0*SQRT(Inputs!B2-Inputs!B6)"
 def test_a_candidate_that_loses_trials_to_errors_cannot_be_the_best(book, engine):
     """An order of x loses x % of the trials; by those that are left the largest order is the best."""
     model = xlmc.load(book(["Order", "=Inputs!B6", 0, 100, 10, None], profit=LOSING))
-    found = model.optimise(maximise="mean of Profit", trials=5_000, engine=engine)
-    assert found.values == {"Order": 0}
-    assert found.lost == 0
-    assert found.meets
-    assert found.lost_as_it_is == pytest.approx(0.5, abs=0.03)
-    shares = {each.candidate[0]: each.lost for each in found.excluded}
+    result = model.optimise(maximise="mean of Profit", trials=5_000, engine=engine)
+    assert result.values == {"Order": 0}
+    assert result.lost == 0
+    assert result.meets
+    assert result.lost_as_it_is == pytest.approx(0.5, abs=0.03)
+    shares = {each.candidate[0]: each.lost for each in result.excluded}
     assert [*sorted(shares)] == [*range(10, 101, 10)]
     assert all(shares[order] == pytest.approx(order / 100, abs=0.15) for order in shares)
-    looking = {each.candidate[0] for each in found.excluded if each.looks_better}
+    looking = {each.candidate[0] for each in result.excluded if each.looks_better}
     assert {50, 60, 70} <= looking
-    assert not any(each.meets for each in found.rivals)
-    text = str(found)
+    assert not any(each.meets for each in result.rivals)
+    text = str(result)
     assert "10 candidates lose more than 0.1 % of the trials to errors in cells, and cannot be the best" in text
     assert "would be better" in text
 
@@ -159,21 +161,21 @@ def test_a_candidate_that_loses_trials_to_errors_cannot_be_the_best(book, engine
 def test_trials_that_may_be_lost_are_allowed(book):
     """Of whole orders, those up to 30 % are allowed; that is stated of the best, which loses so many."""
     model = xlmc.load(book(["Order", "=Inputs!B6", 0, 100, 10, None], profit=LOSING))
-    found = model.optimise(maximise="mean of Profit", trials=20_000, allow_lost=33)
-    assert found.values == {"Order": 30}
-    assert found.lost == pytest.approx(0.3, abs=0.015)
-    assert found.meets
+    result = model.optimise(maximise="mean of Profit", trials=20_000, allow_lost=33)
+    assert result.values == {"Order": 30}
+    assert result.lost == pytest.approx(0.3, abs=0.015)
+    assert result.meets
     with pytest.raises(SimulationError, match="101 % of the trials cannot be lost"):
         model.optimise(maximise="mean of Profit", trials=100, allow_lost=101)
 
 
 def test_where_all_candidates_lose_trials_none_is_sound(book):
     model = xlmc.load(book(["Order", "=Inputs!B6", 20, 100, 10, None], profit=LOSING))
-    found = model.optimise(maximise="mean of Profit", trials=5_000)
-    assert found.values == {"Order": 20}  # it loses the least
-    assert not found.is_whole
-    assert not found.meets
-    assert re.search(r"Errors in cells take (19|20|21) % of the trials of these decisions, and 0.1 %", str(found))
+    result = model.optimise(maximise="mean of Profit", trials=5_000)
+    assert result.values == {"Order": 20}  # it loses the least
+    assert not result.is_whole
+    assert not result.meets
+    assert re.search(r"Errors in cells take (19|20|21) % of the trials of these decisions, and 0.1 %", str(result))
 
 
 def test_errors_in_filters_count_and_rejected_trials_do_not(book):
@@ -182,22 +184,22 @@ def test_errors_in_filters_count_and_rejected_trials_do_not(book):
     profit, limits = "=2*Inputs!B6", [["Free", "=Free!A1", 0]]
     undecided = "=IF(Inputs!B6>50,SQRT(Inputs!B2-Inputs!B6),1)"
     path = book(*rows, filters=limits, free=undecided, profit=profit)
-    found = xlmc.load(path).optimise(maximise="mean of Profit", trials=5_000)
-    assert found.values == {"Order": 40}
-    (excluded,) = found.excluded
+    result = xlmc.load(path).optimise(maximise="mean of Profit", trials=5_000)
+    assert result.values == {"Order": 40}
+    (excluded,) = result.excluded
     assert excluded.lost == pytest.approx(0.6, abs=0.15)
     path = book(*rows, filters=limits, free="=Inputs!B2-Inputs!B6", profit=profit)
-    found = xlmc.load(path).optimise(maximise="mean of Profit", trials=5_000)
-    assert found.values == {"Order": 60}
-    assert not found.excluded
+    result = xlmc.load(path).optimise(maximise="mean of Profit", trials=5_000)
+    assert result.values == {"Order": 60}
+    assert not result.excluded
 
 
 def test_the_smallest_is_found_too(book):
-    found = xlmc.load(book()).optimise(
+    result = xlmc.load(book()).optimise(
         minimise="SD of Profit", subject_to=["mean of Profit >= 30"], trials=40_000, seed=2
     )
     least = min(order for order in range(101) if 5 * (order - order**2 / 200) - 3 * order >= 30)  # 20
-    assert found.values["Order"] in (least, least + 1)
+    assert result.values["Order"] in (least, least + 1)
 
 
 def test_a_decision_that_a_row_of_a_table_reads_is_typed_in(book):
@@ -206,8 +208,8 @@ def test_a_decision_that_a_row_of_a_table_reads_is_typed_in(book):
     model = xlmc.load(path)
     decisions = model._compiled.definitions.decisions
     assert CandidateTrials(model._compiled, decisions, "numpy", 1, [(0, None)]).by_typing
-    found = model.optimise(maximise="mean of Profit", trials=1_000)
-    assert found.values == {"Greatest demand": 140}
+    result = model.optimise(maximise="mean of Profit", trials=1_000)
+    assert result.values == {"Greatest demand": 140}
 
 
 def test_candidates_as_inputs_give_what_typing_them_gives(book):
@@ -260,15 +262,15 @@ def test_errors_are_what_other_seeds_show(book):
     model = xlmc.load(book(ORDER))._compiled
     decisions = model.definitions.decisions
     texts = ("mean of Profit", "SD of Profit", "P65 of Profit", "probability of Profit above 20")
-    found = {text: [] for text in texts}
+    result = {text: [] for text in texts}
     for seed in range(60):
         reader = Reader(model, decisions)
         goals = [reader.goal(text, maximise=True) for text in texts]
         trials = CandidateTrials(model, decisions, "numpy", seed, reader.columns)
         first, second = (each.columns for each in trials.forecasts([(60.0,), (70.0,)], 0, 2_000))
         for goal, text in zip(goals, texts, strict=True):
-            found[text].append(apart(goal.measure.of(first, (60.0,)), goal.measure.of(second, (70.0,))))
-    for text, pairs in found.items():
+            result[text].append(apart(goal.measure.of(first, (60.0,)), goal.measure.of(second, (70.0,))))
+    for text, pairs in result.items():
         differences, errors = np.array(pairs).T
         assert 0.7 < differences.std(ddof=1) / errors.mean() < 1.4, text
 
@@ -326,11 +328,11 @@ def test_what_cannot_be_asked_is_refused(book):
 
 
 def test_few_trials_end_the_search_with_the_best_so_far(book):
-    found = xlmc.load(book(["Order", "=Inputs!B6", 0, 100, None, None])).optimise(
+    result = xlmc.load(book(["Order", "=Inputs!B6", 0, 100, None, None])).optimise(
         maximise="mean of Profit", trials=20_000, runs=1
     )
-    assert found.ended == "its trials were spent"
-    assert abs(found.values["Order"] - 40) < 15
+    assert result.ended == "its trials were spent"
+    assert abs(result.values["Order"] - 40) < 15
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no such signal")
@@ -344,10 +346,10 @@ def test_ctrl_c_ends_the_search_with_the_best_so_far(book):
             signal.raise_signal(signal.SIGINT)
 
     model = xlmc.load(book(["Order", "=Inputs!B6", 0, 100, None, None]))
-    found = model.optimise(maximise="mean of Profit", trials=4_000, tell=press)
-    assert found.ended == "it was interrupted"
+    result = model.optimise(maximise="mean of Profit", trials=4_000, tell=press)
+    assert result.ended == "it was interrupted"
     assert len([each for each in steps if each.startswith("searching step by step")]) == 1
-    assert abs(found.values["Order"] - 40) < 15
+    assert abs(result.values["Order"] - 40) < 15
 
 
 @pytest.mark.parametrize(
@@ -384,9 +386,9 @@ def test_knapsacks_of_many_items_are_searched(tmp_path):
     path = tmp_path / "knapsack.xlsx"
     workbook_of(sheets, tables).save(path)
     carried = " + ".join(f"{w}*x{n}" for n, w in enumerate(weight)) + " <= 20"
-    found = xlmc.load(path).optimise(maximise="mean of worth", subject_to=[carried], trials=2_000)
-    assert np.dot(found.best, weight) <= 20
-    assert np.dot(found.best, worth) >= best - 1
+    result = xlmc.load(path).optimise(maximise="mean of worth", subject_to=[carried], trials=2_000)
+    assert np.dot(result.best, weight) <= 20
+    assert np.dot(result.best, worth) >= best - 1
 
 
 def test_an_equality_computes_a_decision_from_the_others(tmp_path):
@@ -408,17 +410,17 @@ def test_an_equality_computes_a_decision_from_the_others(tmp_path):
     }
     path = tmp_path / "funds.xlsx"
     workbook_of(sheets, tables).save(path)
-    found = xlmc.load(path).optimise(minimise="SD of Return", subject_to=["A + B + C = 1"], trials=20_000)
-    assert sum(found.values.values()) == pytest.approx(1.0, abs=1e-12)
+    result = xlmc.load(path).optimise(minimise="SD of Return", subject_to=["A + B + C = 1"], trials=20_000)
+    assert sum(result.values.values()) == pytest.approx(1.0, abs=1e-12)
     least = math.sqrt(16 / 21)
-    assert abs(found.found.value - least) < 3 * found.found.error + found.indifference
-    assert [*found.values.values()] == pytest.approx([16 / 21, 4 / 21, 1 / 21], abs=0.03)
-    assert found.requirements[0].exact
-    assert found.meets
-    assert "A + B + C = 1: met, 1." in str(found)
+    assert abs(result.estimate.value - least) < 3 * result.estimate.error + result.indifference
+    assert [*result.values.values()] == pytest.approx([16 / 21, 4 / 21, 1 / 21], abs=0.03)
+    assert result.requirements[0].exact
+    assert result.meets
+    assert "A + B + C = 1: met, 1." in str(result)
     two = ["A + B + C = 1", "A - 2*B = 0"]
-    found = xlmc.load(path).optimise(minimise="SD of Return", subject_to=two, trials=5_000)
-    a, b, c = found.values.values()
+    result = xlmc.load(path).optimise(minimise="SD of Return", subject_to=two, trials=5_000)
+    a, b, c = result.values.values()
     assert (a + b + c, a - 2 * b) == pytest.approx((1.0, 0.0), abs=1e-9)
     # SD² = 4b² + 4b² + 16(1 - 3b)²: least at b = 48/152
     assert b == pytest.approx(48 / 152, abs=0.03)
@@ -428,21 +430,21 @@ def test_an_equality_computes_a_decision_from_the_others(tmp_path):
 
 def test_an_equality_of_whole_numbers_leaves_those_that_meet_it(book):
     rows = (["Order", "=Inputs!B6", 0, 100, 10, None], ["Price", "=Inputs!B7", 1, 10, 1, None])
-    found = xlmc.load(book(*rows)).optimise(
+    result = xlmc.load(book(*rows)).optimise(
         maximise="mean of Profit", subject_to=["Order + 10*Price = 100"], trials=2_000
     )
-    assert found.tried == 10  # Order 0 to 90
-    assert found.values["Order"] + 10 * found.values["Price"] == 100
+    assert result.tried == 10  # Order 0 to 90
+    assert result.values["Order"] + 10 * result.values["Price"] == 100
 
 
 def test_rounding_of_decisions_is_no_miss(book):
     """In binary numbers .1 + .2 is a little more than .3."""
     rows = (["Order", "=Inputs!B6", None, None, None, "0.1"], ["Price", "=Inputs!B7", None, None, None, "0.2"])
-    found = xlmc.load(book(*rows)).optimise(
+    result = xlmc.load(book(*rows)).optimise(
         maximise="mean of Profit", subject_to=["Order + Price <= 0.3", "Order + Price = 0.3"], trials=500
     )
-    assert found.meets
-    assert all(each.chance == 1.0 for each in found.requirements)
+    assert result.meets
+    assert all(each.chance == 1.0 for each in result.requirements)
 
 
 @pytest.mark.parametrize("more", [(), (ORDER,)])
@@ -451,15 +453,15 @@ def test_categories_may_be_texts(book, more):
     rows = (["Colour", "=Free!A1", None, None, None, "blue; red; green"], *more)
     profit = '=IF(Free!A1="red",9,5)*MIN(Inputs!B6,Inputs!B2)-3*Inputs!B6'
     model = xlmc.load(book(*rows, free="green", profit=profit))
-    found = model.optimise(maximise="mean of Profit", trials=20_000)
-    assert found.values["Colour"] == "red"
-    assert found.run.model.workbook.content(found.decisions[0].cell).value == "red"
+    result = model.optimise(maximise="mean of Profit", trials=20_000)
+    assert result.values["Colour"] == "red"
+    assert result.run.model.workbook.content(result.decisions[0].cell).value == "red"
     if more:
-        assert found.values["Order"] == pytest.approx(200 / 3, abs=4)  # 9·(1 - x/100) = 3
-    assert "with Colour = red" in str(found)
-    order = found.values.get("Order", 50)
-    assert abs(found.found.value - (9 * (order - order**2 / 200) - 3 * order)) < 4 * found.found.error
-    own = found.as_it_is
+        assert result.values["Order"] == pytest.approx(200 / 3, abs=4)  # 9·(1 - x/100) = 3
+    assert "with Colour = red" in str(result)
+    order = result.values.get("Order", 50)
+    assert abs(result.estimate.value - (9 * (order - order**2 / 200) - 3 * order)) < 4 * result.estimate.error
+    own = result.as_it_is
     assert abs(own.value - (5 * (50 - 12.5) - 150)) < 4 * own.error
     with pytest.raises(SimulationError, match="the values of 'Colour' are texts"):
         model.optimise(maximise="mean of Profit", subject_to=["Colour <= 3"], trials=500)
@@ -468,9 +470,9 @@ def test_categories_may_be_texts(book, more):
 def test_true_and_false_are_typed_as_such(book):
     rows = (["Open", "=Free!A1", None, None, None, "FALSE; TRUE"],)
     model = xlmc.load(book(*rows, free=False, profit="=IF(Free!A1,Inputs!B2,0)"))
-    found = model.optimise(maximise="mean of Profit", trials=500)
-    assert found.values == {"Open": True}
-    assert found.as_it_is.value == 0
+    result = model.optimise(maximise="mean of Profit", trials=500)
+    assert result.values == {"Open": True}
+    assert result.as_it_is.value == 0
 
 
 @pytest.mark.parametrize(
@@ -483,7 +485,7 @@ def test_true_and_false_are_typed_as_such(book):
 )
 def test_further_statistics_and_their_errors(book, text, value):
     model = xlmc.load(book())._compiled
-    decisions, found = model.definitions.decisions, []
+    decisions, result = model.definitions.decisions, []
     for seed in range(80):
         reader = Reader(model, decisions)
         goal = reader.goal(text, maximise=True)
@@ -491,16 +493,16 @@ def test_further_statistics_and_their_errors(book, text, value):
         (columns,) = (each.columns for each in trials.forecasts([(30.0,)], 0, 2_000))
         measured = goal.measure.of(columns, (30.0,))
         assert measured.value == pytest.approx(value(columns[0]))
-        found.append((measured.value, measured.error))
-    values, errors = np.array(found).T
+        result.append((measured.value, measured.error))
+    values, errors = np.array(result).T
     assert 0.75 < values.std(ddof=1) / errors.mean() < 1.3
 
 
 def test_decisions_that_change_nothing_are_told(book):
     model = xlmc.load(book(PRICE, profit="=Inputs!B2"))
     assert "All candidates give the same" in str(model.optimise(maximise="mean of Profit", trials=500))
-    found = xlmc.load(book(ORDER)).optimise(maximise="mean of Profit", trials=20_000)
-    assert "All candidates give the same" not in str(found)
+    result = xlmc.load(book(ORDER)).optimise(maximise="mean of Profit", trials=20_000)
+    assert "All candidates give the same" not in str(result)
 
 
 def test_workbooks_that_feed_each_other_are_optimised(book, tmp_path):
@@ -512,7 +514,7 @@ def test_workbooks_that_feed_each_other_are_optimised(book, tmp_path):
     workbook_of(sheets, {"xlmc_assumptions": "In!A1:D2", "xlmc_forecasts": "Out!A1:B2"}).save(tmp_path / "more.xlsx")
     feeds = {"Demand": f"{tmp_path / 'more.xlsx'}!More"}
     model = xlmc.load(book(["Order", "=Inputs!B6", 0, 100, 25, None]), feeds=feeds)
-    found = model.optimise(maximise="mean of Profit", trials=1_000)
-    assert found.values == {"Order": 100}
-    assert found.found.value == pytest.approx(200)
-    assert found.save(tmp_path / "found.json").exists()
+    result = model.optimise(maximise="mean of Profit", trials=1_000)
+    assert result.values == {"Order": 100}
+    assert result.estimate.value == pytest.approx(200)
+    assert result.save(tmp_path / "found.json").exists()

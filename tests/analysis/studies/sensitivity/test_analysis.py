@@ -24,8 +24,8 @@ def case():
     return sensitivities(simulated(load(EXAMPLES / "intersection.xlsx")))
 
 
-def influence(found, forecast, assumption):
-    return next(each for each in found[forecast].influences if each.assumption == assumption)
+def influence(result, forecast, assumption):
+    return next(each for each in result[forecast].influences if each.assumption == assumption)
 
 
 @pytest.mark.parametrize(
@@ -72,10 +72,10 @@ def test_correlated_assumptions_share_what_they_explain(book, normal):
         {"y": "B1", "z": "A2"},
         correlations={("a", "b"): 0.7},
     )
-    found = sensitivities(simulated(model, 20_000, 2))
+    result = sensitivities(simulated(model, 20_000, 2))
     rho = 2.0 * math.sin(math.pi * 0.7 / 6.0)
     for name, truth in (("a", 0.2), ("b", 0.2 * rho**2), ("c", 0.8)):
-        each = influence(found, "y", name).explained
+        each = influence(result, "y", name).explained
         assert abs(each.value - truth) < 4.0 * each.error
 
 
@@ -91,15 +91,15 @@ def test_of_many_assumptions_those_that_matter_are_measured(book):
     """
     n = MEASURED + 60
     run = simulated(many(book, n), 4000, 1)
-    found = sensitivities(run)
-    assert (found.omitted, found["y"].omitted) == (60, 60)
-    assert len(found["y"].influences) == len(found["y"].bars) == MEASURED
-    assert {each.assumption for each in found["y"].influences[:2]} == {"a1", f"a{n}"}
-    assert {each.assumption for each in found["y"].bars[:2]} == {"a1", f"a{n}"}
+    result = sensitivities(run)
+    assert (result.omitted, result["y"].omitted) == (60, 60)
+    assert len(result["y"].influences) == len(result["y"].bars) == MEASURED
+    assert {each.assumption for each in result["y"].influences[:2]} == {"a1", f"a{n}"}
+    assert {each.assumption for each in result["y"].bars[:2]} == {"a1", f"a{n}"}
     every = sensitivities(run, assumptions=[f"a{i}" for i in range(1, n + 1)])
     assert (every.omitted, len(every["y"].influences), len(every["y"].bars)) == (0, n, n)
     whole_square = influence(every, "y", "a1").rank_correlation.value ** 2
-    for each in found["y"].influences:
+    for each in result["y"].influences:
         whole = influence(every, "y", each.assumption)
         assert each.explained_floor == whole.explained_floor
         noise = (60 / run.accepted + 3 * math.sqrt(2 * 60) / 2048) / whole_square
@@ -134,9 +134,9 @@ def test_replicated_runs_have_errors_of_their_own(book, sampling):
 
 
 def test_draws_that_were_not_kept(book):
-    found = sensitivities(simulated(many(book, 3), 1000, 1, keep_inputs=0))
-    assert found["y"].influences == ()
-    assert len(found["y"].bars) == 3
+    result = sensitivities(simulated(many(book, 3), 1000, 1, keep_inputs=0))
+    assert result["y"].influences == ()
+    assert len(result["y"].bars) == 3
 
 
 def test_no_accepted_trial_and_no_live_assumption(book):
@@ -146,13 +146,13 @@ def test_no_accepted_trial_and_no_live_assumption(book):
         {"y": "B1"},
         {"f": "C1", "g": {"cell": "B1", "below": 0.5}},
     )
-    found = sensitivities(simulated(none, 500, 1))
-    assert found["y"].influences == ()
-    assert found.filter_limits == ()
+    result = sensitivities(simulated(none, 500, 1))
+    assert result["y"].influences == ()
+    assert result.filter_limits == ()
     still = book({"A1": 0.5, "B1": "=A1"}, {"a": {"cell": "A1", "low": 0, "high": 1, "frozen": True}}, {"y": "B1"})
-    found = sensitivities(simulated(still, 10, 1))
-    assert (found["y"].influences, found["y"].bars, found["y"].base) == ((), (), 0.5)
-    assert "no assumption is drawn" in found.sobol_reason
+    result = sensitivities(simulated(still, 10, 1))
+    assert (result["y"].influences, result["y"].bars, result["y"].base) == ((), (), 0.5)
+    assert "no assumption is drawn" in result.sobol_reason
 
 
 def test_trials_without_a_number_are_left_out_of_that_forecast_only(book):
@@ -162,7 +162,7 @@ def test_trials_without_a_number_are_left_out_of_that_forecast_only(book):
         {"root": "B1", "sum": "B2"},
     )
     run = simulated(model, 4000, 1)
-    found = sensitivities(run)
-    assert found["sum"].trials == 4000
-    assert found["root"].trials == run["root"].values.size
-    assert influence(found, "root", "a").explained.n == found["root"].trials
+    result = sensitivities(run)
+    assert result["sum"].trials == 4000
+    assert result["root"].trials == run["root"].values.size
+    assert influence(result, "root", "a").explained.n == result["root"].trials

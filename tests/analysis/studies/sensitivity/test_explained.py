@@ -131,10 +131,10 @@ def test_of_noise_alone_nothing_is_explained_and_its_fourth_power_is_right_on_av
 def test_neighbours_in_rank_explain_what_is_smooth_and_no_noise():
     """A trial less the mean of its neighbours has 3/2 of the variance of noise (Gasser et al. 1986)."""
     rng = np.random.default_rng(4)
-    found = [_beside_neighbours(rng.normal(size=500)) for _ in range(2_000)]
-    assert abs(np.mean(found)) < 4 * np.std(found) / math.sqrt(2_000)
+    result = [_beside_neighbours(rng.normal(size=500)) for _ in range(2_000)]
+    assert abs(np.mean(result)) < 4 * np.std(result) / math.sqrt(2_000)
     # its variance: 35/9 - 2 above that of the variance itself, whose own is 2/n
-    assert np.var(found) * 500 == pytest.approx(35 / 9, rel=0.15)
+    assert np.var(result) * 500 == pytest.approx(35 / 9, rel=0.15)
     assert _beside_neighbours(np.linspace(-1, 1, 50)) == pytest.approx(1.0)
     assert _beside_neighbours(np.array([1.0, -1.0])) == -math.inf
     assert _beside_neighbours(np.array([1.0, 0.0, -1.0])) == pytest.approx(1.0)

@@ -36,9 +36,9 @@ def test_squared_correlations_are_those_of_the_ranks():
     draws = random.random((3, 500))
     draws[1] = np.round(draws[1] * 4)  # equal values
     forecasts = [draws[0] + draws[1], np.exp(5 * draws[2])]
-    found = first_look(list(draws), forecasts).squares
+    result = first_look(list(draws), forecasts).squares
     expected = [[spearmanr(x, y).statistic ** 2 for y in forecasts] for x in draws]
-    np.testing.assert_allclose(found, expected, rtol=1e-12)
+    np.testing.assert_allclose(result, expected, rtol=1e-12)
 
 
 def test_bits_depend_on_nothing_else():
@@ -54,7 +54,7 @@ def test_bits_depend_on_nothing_else():
 def test_what_does_not_vary_has_no_score():
     random = np.random.default_rng(9)
     draws = [random.random(100), np.full(100, 3.0)]
-    found = first_look(draws, [random.random(100), np.full(100, 2.0), np.full(100, np.nan)])
-    assert np.isfinite(found.scores[0, 0])
-    assert np.isneginf(found.scores[[1, 0, 0], [0, 1, 2]]).all()
-    assert not found.squares[[1, 0, 0], [0, 1, 2]].any()
+    result = first_look(draws, [random.random(100), np.full(100, 2.0), np.full(100, np.nan)])
+    assert np.isfinite(result.scores[0, 0])
+    assert np.isneginf(result.scores[[1, 0, 0], [0, 1, 2]]).all()
+    assert not result.squares[[1, 0, 0], [0, 1, 2]].any()

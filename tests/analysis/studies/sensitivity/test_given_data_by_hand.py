@@ -33,25 +33,25 @@ def columns(n, seed=1, ties=False):
 def lines_by_hand(x, y, classes):
     """y's regression on x in each class, in ascending order of x."""
     order = np.argsort(x)
-    found = np.empty(x.size)
+    result = np.empty(x.size)
     for start, size in zip(classes.starts, classes.sizes, strict=True):
         part = slice(start, start + size)
         if np.ptp(x[order][part]) > 0.0:
-            found[part] = np.polyval(np.polyfit(x[order][part], y[order][part], 1), x[order][part])
+            result[part] = np.polyval(np.polyfit(x[order][part], y[order][part], 1), x[order][part])
         else:
-            found[part] = y[order][part].mean()
-    return order, found
+            result[part] = y[order][part].mean()
+    return order, result
 
 
 @pytest.mark.parametrize(
     ("n", "classes", "freedom"), [(49, 1, 2), (99, 1, 2), (100, 2, 4), (799, 15, 30), (800, 16, 32), (5_000, 16, 32)]
 )
 def test_classes_are_sixteen_of_fifty_trials_or_more(n, classes, freedom):
-    found = Ranked.of(columns(n)[0]).classes
-    assert (found.sizes.size, found.freedom) == (classes, freedom)
-    assert found.sizes.sum() == n
-    assert np.ptp(found.sizes) <= 1
-    assert found.label.tolist() == np.repeat(np.arange(classes), found.sizes).tolist()
+    result = Ranked.of(columns(n)[0]).classes
+    assert (result.sizes.size, result.freedom) == (classes, freedom)
+    assert result.sizes.sum() == n
+    assert np.ptp(result.sizes) <= 1
+    assert result.label.tolist() == np.repeat(np.arange(classes), result.sizes).tolist()
 
 
 @pytest.mark.parametrize(
@@ -104,11 +104,11 @@ def test_the_error_of_a_rank_correlation_is_that_of_the_jackknife(r, ties):
     x = rng.normal(size=300)
     y = r * x + math.sqrt(1.0 - r * r) * rng.normal(size=300)
     x, y = (np.round(x, 1), np.round(y, 1)) if ties else (x, y)
-    found = rank_correlation(Ranked.of(x), Ranked.of(y), Units.of(300))
-    assert found.value == pytest.approx(stats.spearmanr(x, y).statistic, abs=1e-12)
-    assert found.error == pytest.approx(left_out(lambda a, b: stats.spearmanr(a, b).statistic, x, y), rel=0.02)
-    z, half = math.atanh(found.value), stats.t.ppf(0.975, 299) * found.error / (1.0 - found.value**2)
-    assert found.interval == pytest.approx((math.tanh(z - half), math.tanh(z + half)))
+    result = rank_correlation(Ranked.of(x), Ranked.of(y), Units.of(300))
+    assert result.value == pytest.approx(stats.spearmanr(x, y).statistic, abs=1e-12)
+    assert result.error == pytest.approx(left_out(lambda a, b: stats.spearmanr(a, b).statistic, x, y), rel=0.02)
+    z, half = math.atanh(result.value), stats.t.ppf(0.975, 299) * result.error / (1.0 - result.value**2)
+    assert result.interval == pytest.approx((math.tanh(z - half), math.tanh(z + half)))
 
 
 def test_the_error_of_an_explained_share_is_near_that_of_the_jackknife():
@@ -116,8 +116,8 @@ def test_the_error_of_an_explained_share_is_near_that_of_the_jackknife():
     rng = np.random.default_rng(4)
     x = rng.normal(size=99)
     y = 0.7 * x + 0.5 * rng.normal(size=99)
-    found = explained_share(Ranked.of(x), y, Units.of(99))
-    assert found.error == pytest.approx(left_out(lambda a, b: np.corrcoef(a, b)[0, 1] ** 2, x, y), rel=0.06)
+    result = explained_share(Ranked.of(x), y, Units.of(99))
+    assert result.error == pytest.approx(left_out(lambda a, b: np.corrcoef(a, b)[0, 1] ** 2, x, y), rel=0.06)
 
 
 def test_shares_of_very_few_trials_or_of_no_variation_are_not_known():
@@ -150,17 +150,17 @@ def test_contributions_and_their_errors():
     """Shares r²/(Σr² + others), with the signs of r, and the errors of their first derivatives."""
     values, errors, others = np.array([0.6, -0.3, 0.1]), np.array([0.02, 0.03, 0.01]), 0.05
     given = [Estimate(r, e, None, 100) for r, e in zip(values, errors, strict=True)]
-    found = contributions(given, others)
+    result = contributions(given, others)
     total = np.sum(values**2) + others
-    assert [each.value for each in found] == pytest.approx(np.sign(values) * values**2 / total)
+    assert [each.value for each in result] == pytest.approx(np.sign(values) * values**2 / total)
 
     def share(r):
         return r**2 / (np.sum(r**2) + others)
 
     steps = np.eye(3) * 1e-6
     slopes = np.array([(share(values + step) - share(values - step)) / 2e-6 for step in steps]).T
-    assert [each.error for each in found] == pytest.approx(np.sqrt((slopes**2) @ errors**2), rel=1e-6)
-    assert {each.n for each in found} == {100}
+    assert [each.error for each in result] == pytest.approx(np.sqrt((slopes**2) @ errors**2), rel=1e-6)
+    assert {each.n for each in result} == {100}
 
 
 def test_contributions_of_what_is_not_known():

@@ -122,7 +122,7 @@ def test_errors_are_the_spread_between_runs(below, monkeypatch):
 
 
 def test_a_limit_in_a_cell_is_moved_and_one_that_varies_is_named(book):
-    found = sensitivities(
+    result = sensitivities(
         simulated(
             book(
                 {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2", "D1": "=0.25+0.25", "D2": "=0.9+A2"},
@@ -134,8 +134,8 @@ def test_a_limit_in_a_cell_is_moved_and_one_that_varies_is_named(book):
             1,
         )
     )
-    assert [(each.filter, each.limit) for each in found.filter_limits] == [("fixed", 0.5)]
-    assert found.varying_limits == ("varying",)
+    assert [(each.filter, each.limit) for each in result.filter_limits] == [("fixed", 0.5)]
+    assert result.varying_limits == ("varying",)
 
 
 @pytest.mark.parametrize("sampling", ["lhs", "sobol"])

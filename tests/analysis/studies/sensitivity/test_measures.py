@@ -27,8 +27,8 @@ def of(*influences):
 
 
 def test_what_is_strong_is_no_noise():
-    (found,) = of(influence(first_order=Estimate(0.4, 0.01), total=Estimate(0.5, 0.01)))
-    assert not any((found.explained, found.dependence, found.correlation, found.first_order, found.total))
+    (result,) = of(influence(first_order=Estimate(0.4, 0.01), total=Estimate(0.5, 0.01)))
+    assert not any((result.explained, result.dependence, result.correlation, result.first_order, result.total))
 
 
 @pytest.mark.parametrize("sign", [1, -1])
@@ -41,10 +41,10 @@ def test_of_many_assumptions_the_largest_lies_farther_off_by_chance(sign, errors
 
 
 def test_each_measure_has_its_own_floor():
-    (found,) = of(influence(explained=Estimate(0.02, 0.01), total=Estimate(-0.01, 0.02), first_order=None))
-    assert (found.explained, found.dependence, found.total, found.first_order) == (True, False, True, False)
+    (result,) = of(influence(explained=Estimate(0.02, 0.01), total=Estimate(-0.01, 0.02), first_order=None))
+    assert (result.explained, result.dependence, result.total, result.first_order) == (True, False, True, False)
 
 
 def test_without_an_error_nothing_is_called_noise():
-    (found,) = of(influence(rank_correlation=Estimate(0.001, None)))
-    assert not found.correlation
+    (result,) = of(influence(rank_correlation=Estimate(0.001, None)))
+    assert not result.correlation

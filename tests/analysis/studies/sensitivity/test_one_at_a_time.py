@@ -28,8 +28,8 @@ def model(book):
 
 
 def test_each_moves_alone_from_the_base_case(model):
-    found = one_at_a_time(model, [*model.draws])
-    assert found.base == (7.0,)
+    result = one_at_a_time(model, [*model.draws])
+    assert result.base == (7.0,)
     bars = bars_of(model)
     share = np.array(PERCENTS) / 100.0
     assert bars["a"].inputs == pytest.approx(10.0 * share)
@@ -63,9 +63,9 @@ def test_a_cell_without_a_value_is_held_at_its_median(book):
         {"a": {"cell": "A1", "low": 0.0, "high": 10.0}, "b": {"cell": "A2", "low": 1.0, "high": 3.0}},
         {"y": "B1"},
     )
-    found = one_at_a_time(model, [*model.draws])
-    assert found.medians == ("a",)
-    assert found.base == (5.0,)
+    result = one_at_a_time(model, [*model.draws])
+    assert result.medians == ("a",)
+    assert result.base == (5.0,)
     assert bars_of(model)["b"].high == pytest.approx(5.0 * 2.8)
 
 

@@ -15,14 +15,14 @@ ISHIGAMI = {"x1": (0.31391, 0.55759), "x2": (0.44241, 0.44241), "x3": (0.0, 0.24
 
 
 @pytest.fixture(scope="module")
-def found(ishigami):
+def result(ishigami):
     return sensitivities(simulated(ishigami, 50_000, 3))
 
 
 @pytest.mark.parametrize("name", ISHIGAMI)
-def test_ishigami(found, name):
+def test_ishigami(result, name):
     first, total = ISHIGAMI[name]
-    each = next(i for i in found["y"].influences if i.assumption == name)
+    each = next(i for i in result["y"].influences if i.assumption == name)
     assert abs(each.first_order.value - first) < 4.0 * each.first_order.error
     assert abs(each.total.value - total) < 4.0 * each.total.error
     assert abs(each.explained.value - first) < 4.0 * each.explained.error + 0.002  # 16 classes of a sine
@@ -30,9 +30,9 @@ def test_ishigami(found, name):
     assert each.seen
 
 
-def test_what_acts_only_with_others_is_not_explained_but_seen(found):
+def test_what_acts_only_with_others_is_not_explained_but_seen(result):
     """x3 moves the spread alone: no rank correlation, no variance explained, a total effect, and dependence."""
-    each = next(i for i in found["y"].influences if i.assumption == "x3")
+    each = next(i for i in result["y"].influences if i.assumption == "x3")
     assert each.explained.value < each.explained_floor
     assert abs(each.rank_correlation.value) < 4.0 * each.rank_correlation.error
     assert each.dependence.value > each.dependence_floor
@@ -58,9 +58,9 @@ def test_assumptions_that_are_evaluated_together_have_the_same_indices(ishigami,
     asked = {name: [0] for name in ishigami.draws}
     expected = pick_and_freeze(ishigami, asked, 10, 1)
     monkeypatch.setattr(module, "_MOST_NUMBERS", most)
-    told = []
-    assert pick_and_freeze(ishigami, asked, 10, 1, told.append) == expected
-    assert told[-1] == 1.0
+    messages = []
+    assert pick_and_freeze(ishigami, asked, 10, 1, messages.append) == expected
+    assert messages[-1] == 1.0
     assert pick_and_freeze(ishigami, {}, 10, 1).indices == {}
 
 
@@ -96,21 +96,21 @@ CELLS = {"A1": 0.5, "A2": 0.5, "B1": "=A1+A2", "C1": "=A1"}
     ],
 )
 def test_it_is_said_why_there_are_none(book, definitions, why):
-    found = sensitivities(simulated(book(CELLS, uniforms("a", "b"), {"y": "B1"}, **definitions), 2000, 1))
-    assert why in found.sobol_reason
-    assert found.sobol_trials == 0
-    assert all(each.total is None for each in found["y"].influences)
+    result = sensitivities(simulated(book(CELLS, uniforms("a", "b"), {"y": "B1"}, **definitions), 2000, 1))
+    assert why in result.sobol_reason
+    assert result.sobol_trials == 0
+    assert all(each.total is None for each in result["y"].influences)
 
 
 def test_none_where_a_parameter_depends_on_an_assumption(book):
     given = uniforms("a", "b")
     given["b"]["high"] = "C2"
-    found = sensitivities(simulated(book({**CELLS, "C2": "=A1+1"}, given, {"y": "B1"}), 2000, 1))
-    assert "parameters of assumptions depend" in found.sobol_reason
+    result = sensitivities(simulated(book({**CELLS, "C2": "=A1+1"}, given, {"y": "B1"}), 2000, 1))
+    assert "parameters of assumptions depend" in result.sobol_reason
 
 
 def test_a_filter_that_rejects_nothing_is_no_reason(book):
     model = book(CELLS, uniforms("a", "b"), {"y": "B1"}, {"f": {"cell": "C1", "below": 2.0}})
-    found = sensitivities(simulated(model, 2000, 1))
-    assert found.sobol_reason == ""
-    assert found.sobol_trials > 0
+    result = sensitivities(simulated(model, 2000, 1))
+    assert result.sobol_reason == ""
+    assert result.sobol_trials > 0

@@ -30,12 +30,12 @@ def look(book):
     return make
 
 
-def kinds(found):
-    return [one.kind for one in found.findings]
+def kinds(result):
+    return [one.kind for one in result.findings]
 
 
-def only(found, kind):
-    (one,) = [finding for finding in found.findings if finding.kind == kind]
+def only(result, kind):
+    (one,) = [finding for finding in result.findings if finding.kind == kind]
     return one
 
 
@@ -50,10 +50,10 @@ def test_a_difference_of_near_equals(look):
 
 
 def test_digits_that_are_not_there(look):
-    found = look({"C1": "=A1+1E16", "B1": "=(C1-1E16)*A2"})
-    assert only(found, "cancellation").level is Level.WRONG
-    assert found.wrong
-    assert any("the digits of 'f' cannot be trusted" in warning for warning in found.run.warnings)
+    result = look({"C1": "=A1+1E16", "B1": "=(C1-1E16)*A2"})
+    assert only(result, "cancellation").level is Level.WRONG
+    assert result.wrong
+    assert any("the digits of 'f' cannot be trusted" in warning for warning in result.run.warnings)
 
 
 def test_angles_subtracted_in_radians(look):
@@ -97,8 +97,8 @@ def test_no_quadrant_is_lost(look, formula):
     ],
 )
 def test_a_formula_that_minds_the_quadrant_itself(look, cells):
-    found = look({"D1": "=IF(A1<0,1,2)", **cells}, filters={"some": {"cell": "D1", "at_least": 0}}, x=(-1, 3))
-    assert "quadrant" not in kinds(found)
+    result = look({"D1": "=IF(A1<0,1,2)", **cells}, filters={"some": {"cell": "D1", "at_least": 0}}, x=(-1, 3))
+    assert "quadrant" not in kinds(result)
 
 
 def test_the_choice_that_mends_a_quadrant_is_no_jump(look):
@@ -108,8 +108,8 @@ def test_the_choice_that_mends_a_quadrant_is_no_jump(look):
 
 def test_only_assumptions_that_a_cell_depends_on_are_named(look):
     """Some fifteen trials of 3,000: of y, which has no part in it, they may well take up half."""
-    found = look({"B1": "=LN(A1-1.005)", "C1": "=A2*2"}, filters={"y": {"cell": "C1", "at_least": 0}})
-    assert [one.name for one in only(found, "edge").where] == ["x"]
+    result = look({"B1": "=LN(A1-1.005)", "C1": "=A2*2"}, filters={"y": {"cell": "C1", "at_least": 0}})
+    assert [one.name for one in only(result, "edge").where] == ["x"]
 
 
 @pytest.mark.parametrize(
@@ -124,8 +124,8 @@ def test_only_assumptions_that_a_cell_depends_on_are_named(look):
     ],
 )
 def test_a_comparison_that_does_not_guard_the_arctangent_changes_nothing(look, cells, filters):
-    found = look({"C2": "=IF(A1<0,PI(),0)+ATAN(A2/A1)", **cells}, filters=filters, x=(-1, 3))
-    assert only(found, "quadrant").level is Level.WRONG
+    result = look({"C2": "=IF(A1<0,PI(),0)+ATAN(A2/A1)", **cells}, filters=filters, x=(-1, 3))
+    assert only(result, "quadrant").level is Level.WRONG
 
 
 @pytest.mark.parametrize(
@@ -158,8 +158,8 @@ SMALL = {"x": (1e-9, 2e-9)}
     ids=str,
 )
 def test_what_is_absorbed_whole_goes_to_50_digits(look, cells, where, message, instead):
-    found = look(cells, trials=2000, **SMALL)
-    (one,) = [each for each in found.findings if each.level is Level.WRONG]
+    result = look(cells, trials=2000, **SMALL)
+    (one,) = [each for each in result.findings if each.level is Level.WRONG]
     assert (str(one.cell), message in one.effect) == (where, True), one.effect
     assert instead is None or one.instead == instead
 
@@ -182,8 +182,8 @@ def test_what_never_varies_for_a_reason_is_sound(look, formula):
     ids=str,
 )
 def test_directions_are_not_averaged_as_numbers(look, cells, better):
-    found = look(cells, trials=2000, x=(-2, 2), y=(-2, 2))
-    one = only(found, "direction")
+    result = look(cells, trials=2000, x=(-2, 2), y=(-2, 2))
+    one = only(result, "direction")
     assert one.level is Level.WRONG
     assert one.instead.startswith(better)
     assert "of the accepted trials they lie on both sides of the jump" in one.effect
@@ -220,14 +220,14 @@ def test_directions_on_one_side_of_the_jump_may_be_averaged(look, formula):
     ],
 )
 def test_powers_and_overflows_have_edges(look, formula, what, ranges):
-    found = look({"B1": formula}, trials=2000, **ranges).findings
-    assert [one.level for one in found if one.kind == "edge" and what in one.what] == [Level.DOUBTFUL]
+    result = look({"B1": formula}, trials=2000, **ranges).findings
+    assert [one.level for one in result if one.kind == "edge" and what in one.what] == [Level.DOUBTFUL]
 
 
 @pytest.mark.parametrize("formula", ["=A1^2", "=A1^-1", "=POWER(A1,3)", "=(A1^2)^0.5", "=EXP(A1)", "=ABS(A1)^0.5"])
 def test_powers_and_overflows_without_edges(look, formula):
-    found = look({"B1": formula}, trials=2000, x=(-2, 2)).findings
-    assert not [one for one in found if one.kind == "edge" and one.level is Level.DOUBTFUL]
+    result = look({"B1": formula}, trials=2000, x=(-2, 2)).findings
+    assert not [one for one in result if one.kind == "edge" and one.level is Level.DOUBTFUL]
 
 
 @pytest.mark.parametrize("ends", [(0.1, 0.9), (1, 2), (1100, 2000), (1.1e6, 2e6), (2e8, 2.5e8), (0.99, 1.01)])
@@ -238,8 +238,8 @@ def test_a_variance_that_is_right_to_its_last_digits_is_not_doubted(look, formul
 
 def test_an_unstable_recurrence_is_one_finding(look):
     steps = {f"C{n}": f"=1-{n - 1}*C{n - 1}" for n in range(2, 21)}
-    found = look({"C1": "=1-EXP(-1)+A1*1E-3", **steps, "B1": "=C20"}, trials=2000, x=(0, 1e-25))
-    one = only(found, "cancellation")
+    result = look({"C1": "=1-EXP(-1)+A1*1E-3", **steps, "B1": "=C20"}, trials=2000, x=(0, 1e-25))
+    one = only(result, "cancellation")
     assert one.level is Level.WRONG
     assert "cells repeat this step, from S!C" in one.what
     assert " to S!C" in one.what
@@ -271,15 +271,15 @@ def test_a_forecast_without_a_mean(look):
 
 
 def test_a_quotient_in_a_filter_is_harmless_and_has_another_form(look):
-    found = look({"B1": "=A1*A2", "C1": "=A2/(A1-1.5)"}, filters={"e": {"cell": "C1", "at_least": 0, "below": 5}})
-    one = only(found, "tail")
+    result = look({"B1": "=A1*A2", "C1": "=A2/(A1-1.5)"}, filters={"e": {"cell": "C1", "at_least": 0, "below": 5}})
+    one = only(result, "tail")
     assert one.level is Level.NOTE
     assert one.instead == "=AND(A1-1.5<>0,A2*SIGN(A1-1.5)>=0,A2*SIGN(A1-1.5)<5*ABS(A1-1.5))"
 
 
 def test_filters_that_accept_almost_nothing(look):
-    found = look({"B1": "=A1*A2"}, filters={"big": {"cell": "B1", "above": 3.92}})
-    one = only(found, "filter")
+    result = look({"B1": "=A1*A2"}, filters={"big": {"cell": "B1", "above": 3.92}})
+    one = only(result, "filter")
     assert one.level is Level.DOUBTFUL
     assert "'big' rejects most" in one.what
     none = look({"B1": "=A1*A2"}, filters={"big": {"cell": "B1", "above": 5}})
@@ -288,14 +288,14 @@ def test_filters_that_accept_almost_nothing(look):
 
 
 def test_an_answer_that_amplifies(look):
-    found = look({"B1": "=(A1-0.99*A1)/(A1-A2)"}, x=(1.0, 1.0001), y=(1.0002, 1.0003))
-    one = only(found, "amplification")
+    result = look({"B1": "=(A1-0.99*A1)/(A1-A2)"}, x=(1.0, 1.0001), y=(1.0002, 1.0003))
+    one = only(result, "amplification")
     assert "when its assumptions change by 1 %" in one.what
 
 
 def test_functions_that_are_not_recomputed_are_named(look):
-    found = look({"B1": "=NORM.DIST(A1,A2,1,TRUE)+1E8*A1-1E8*A1"})
-    assert [(str(cell), functions) for cell, functions in found.unchecked] == [("S!B1", ("NORM.DIST",))]
+    result = look({"B1": "=NORM.DIST(A1,A2,1,TRUE)+1E8*A1-1E8*A1"})
+    assert [(str(cell), functions) for cell, functions in result.unchecked] == [("S!B1", ("NORM.DIST",))]
 
 
 def test_arrays_whose_size_varies(look, monkeypatch):
@@ -304,18 +304,18 @@ def test_arrays_whose_size_varies(look, monkeypatch):
     monkeypatch.setattr("xlmc.analysis.studies.stability.extent._ACCEPTED", 16)
     monkeypatch.setattr("xlmc.montecarlo.simulation.simulate.BLOCK", 512)
     dynamic = CellContent(None, Formula("SUM(FILTER(C1:C3,C1:C3>A1))+1E16-1E16", 1, 2, dynamic=True))
-    found = look({"B1": dynamic, "C1": 1.25, "C2": "=A1*1.1", "C3": "=A1/3+A2"}, trials=200)
-    assert only(found, "cancellation").level is Level.WRONG
-    assert found.run.warnings
-    assert found.unchecked
+    result = look({"B1": dynamic, "C1": 1.25, "C2": "=A1*1.1", "C3": "=A1/3+A2"}, trials=200)
+    assert only(result, "cancellation").level is Level.WRONG
+    assert result.run.warnings
+    assert result.unchecked
 
 
 def test_sums_of_large_arrays_of_constants_count_as_typed_and_are_named(look, monkeypatch):
     monkeypatch.setattr("xlmc.analysis.studies.stability.extent._MOST_OPENED", 1_000)
     cells = {f"C{k}": k / 7 for k in range(1, 1001)}
-    found = look(cells | {"D1": "=SUMPRODUCT(C1:C1000*C1:C1000)*2", "B1": "=(A1+D1+1E16)-1E16"})
-    assert only(found, "cancellation").level is Level.WRONG
-    assert [(str(cell), functions) for cell, functions in found.unchecked] == [("S!D1", ("SUMPRODUCT",))]
+    result = look(cells | {"D1": "=SUMPRODUCT(C1:C1000*C1:C1000)*2", "B1": "=(A1+D1+1E16)-1E16"})
+    assert only(result, "cancellation").level is Level.WRONG
+    assert [(str(cell), functions) for cell, functions in result.unchecked] == [("S!D1", ("SUMPRODUCT",))]
 
 
 def test_a_book_whose_arrays_do_not_fit_into_memory_is_refused_before_the_run(look, monkeypatch):
@@ -335,17 +335,17 @@ def test_cells_move_with_assumptions_as_their_derivatives_say(book):
     needed = [cell for cell in model.lowering.graph.formulas if cell not in model.lowering.inputs]
     movements = Movements({cell: model.lowering.cell(cell) for cell in needed})
     derivatives(model, draws, movements=movements)
-    found = derivatives(model, draws, cells=needed)
+    result = derivatives(model, draws, cells=needed)
     for cell in needed:
-        moved = np.abs(found.cells[cell].gradient * found.points)
+        moved = np.abs(result.cells[cell].gradient * result.points)
         node = movements.nodes[cell]
         assert movements.of_trials[node].tobytes() == np.nansum(moved, axis=1).tobytes()
         assert movements.of_assumptions[node] == pytest.approx(np.nansum(moved, axis=0), rel=1e-13)
 
 
 def test_a_book_without_assumptions(book):
-    found = stability(book({"A1": 2.0, "B1": "=A1^2"}, {}, {"f": "B1"}), trials=100)
-    assert found.findings == ()
+    result = stability(book({"A1": 2.0, "B1": "=A1^2"}, {}, {"f": "B1"}), trials=100)
+    assert result.findings == ()
 
 
 def test_trials_apart_from_the_rest_are_no_heavy_tail(look):
@@ -358,18 +358,18 @@ def test_the_root_of_a_sum_of_squares_has_no_edge(look):
 
 
 def test_a_quadrant_lost_in_trials_that_no_filter_keeps(look):
-    found = look({"B1": "=ATAN(A2/A1)", "C1": "=A1*1"}, filters={"ahead": {"cell": "C1", "above": 0}}, x=(-1, 3))
-    assert only(found, "quadrant").level is Level.DOUBTFUL
+    result = look({"B1": "=ATAN(A2/A1)", "C1": "=A1*1"}, filters={"ahead": {"cell": "C1", "above": 0}}, x=(-1, 3))
+    assert only(result, "quadrant").level is Level.DOUBTFUL
 
 
 def test_a_divisor_that_no_assumption_changes(look):
     """270° typed into a cell: its cosine is folded to -1.8e-16 before any trial, and yet 0."""
-    found = look({"A3": 270.0, "B1": "=(A1*COS(RADIANS(A3))+A2*SIN(RADIANS(2*A3)))/COS(RADIANS(A3))"})
-    one = only(found, "division")
+    result = look({"A3": 270.0, "B1": "=(A1*COS(RADIANS(A3))+A2*SIN(RADIANS(2*A3)))/COS(RADIANS(A3))"})
+    one = only(result, "division")
     assert one.level is Level.WRONG
     assert "no error where the formula, computed exactly, has no value" in one.effect
     assert "it divides by COS(RADIANS(A3))" in one.what
-    assert any("the digits of 'f' cannot be trusted" in warning for warning in found.run.warnings)
+    assert any("the digits of 'f' cannot be trusted" in warning for warning in result.run.warnings)
 
 
 def test_the_range_that_provokes_a_loss_is_told(look):
@@ -380,18 +380,18 @@ def test_the_range_that_provokes_a_loss_is_told(look):
 
 @pytest.mark.filterwarnings("error")
 def test_a_forecast_that_is_an_error_everywhere(look):
-    found = look({"B1": "=SQRT(-A1)"})
-    assert any("lost to errors" in warning for warning in found.run.warnings)
+    result = look({"B1": "=SQRT(-A1)"})
+    assert any("lost to errors" in warning for warning in result.run.warnings)
 
 
 @pytest.mark.filterwarnings("error")
 def test_a_forecast_of_texts(look):
-    found = look({"B1": '=IF(A1>1.5,"fast","slow")'})
-    assert (found.findings, found.run.warnings) == ((), [])
+    result = look({"B1": '=IF(A1>1.5,"fast","slow")'})
+    assert (result.findings, result.run.warnings) == ((), [])
 
 
 def test_the_last_digits_of_zero_are_no_loss(look):
     """0.3 - 0.1 - 0.2 is -2.8e-17 in doubles, and 0 exactly."""
-    found = look({"C1": "=0.3*A1-0.1*A1-0.2*A1", "B1": "=C1*3"})
-    assert found.findings == ()
-    assert [(one.rounding, one.excess) for one in found.cells if str(one.cell) == "S!B1"] == [(0.0, 0.0)]
+    result = look({"C1": "=0.3*A1-0.1*A1-0.2*A1", "B1": "=C1*3"})
+    assert result.findings == ()
+    assert [(one.rounding, one.excess) for one in result.cells if str(one.cell) == "S!B1"] == [(0.0, 0.0)]

@@ -120,12 +120,12 @@ def with_naive_forms(path, template, given, forms):
 def test_naive_forms_are_named_and_the_templates_are_not(template, given, forms, tmp_path, monkeypatch):
     monkeypatch.setattr(rounding_errors, "steady_form", lambda *_: None)  # see test_stable_forms.py
     model = with_naive_forms(tmp_path / "naive.xlsx", template, given, forms)
-    found = stability(model, trials=300, seed=1)
-    lost = {one.name: one for one in found.findings if one.kind in DIGITS and one.level is not Level.NOTE}
+    result = stability(model, trials=300, seed=1)
+    lost = {one.name: one for one in result.findings if one.kind in DIGITS and one.level is not Level.NOTE}
     assert {name: one.kind for name, one in lost.items()} == forms
 
 
 @pytest.mark.parametrize("template", ["edr-speed", "video-speed"])
 def test_the_templates_lose_no_digits_within_their_own_ranges(template):
-    found = stability(load(ROOT / "templates" / f"{template}.xlsx"), trials=2_000, seed=1)
-    assert {one.level for one in found.findings} <= {Level.NOTE}
+    result = stability(load(ROOT / "templates" / f"{template}.xlsx"), trials=2_000, seed=1)
+    assert {one.level for one in result.findings} <= {Level.NOTE}

@@ -84,7 +84,7 @@ def _moved(formula, column):
 
 
 @pytest.fixture(scope="module")
-def found(book):
+def result(book):
     """Beside comparisons that have nothing to do with them."""
     cells, ranges, forecasts, filters = {}, {}, {}, {}
     formulas = {name: (formula, given) for name, (formula, given, *_) in PLANTED.items()}
@@ -102,21 +102,21 @@ def found(book):
 
 
 @pytest.mark.parametrize("name", PLANTED)
-def test_each_is_found_with_its_culprit_and_another_form(found, name):
+def test_each_is_found_with_its_culprit_and_another_form(result, name):
     column = chr(ord("A") + list(PLANTED).index(name))
-    (one,) = [each for each in found.findings if each.name == name and each.level < Level.NOTE]
+    (one,) = [each for each in result.findings if each.name == name and each.level < Level.NOTE]
     assert one.kind == "cancellation"
     assert one.what.startswith(_moved(PLANTED[name][2], column))
     assert one.instead == _moved(PLANTED[name][3], column)
     assert all(where.name.startswith(column) for where in one.where)
 
 
-def test_there_is_no_false_alarm(found):
-    message = {(each.name, each.kind) for each in found.findings if each.name not in PLANTED}
+def test_there_is_no_false_alarm(result):
+    message = {(each.name, each.kind) for each in result.findings if each.name not in PLANTED}
     message -= {(name, kind) for name, kind in message if name.endswith(" ") and kind == "jump"}
     assert {kind for _, kind in message} <= {"amplification"}
     assert {name for name, _ in message} <= {"A1-A2", "1/(A1-A2)", "DEVSQ(A1:A4)/3"}
 
 
-def test_only_the_assumptions_of_the_cell_are_named(found):
-    assert all(where.name[0] == str(each.cell)[2] for each in found.findings for where in each.where)
+def test_only_the_assumptions_of_the_cell_are_named(result):
+    assert all(where.name[0] == str(each.cell)[2] for each in result.findings for where in each.where)

@@ -137,12 +137,12 @@ def test_squares_of_roots_are_what_the_roots_are_of(reader, formula, without):
     ],
 )
 def test_the_root_of_a_square_of_two_terms(reader, formula, root):
-    found = reader.square_root(reader.of(read(formula)))
+    result = reader.square_root(reader.of(read(formula)))
     if root is None:
-        assert found is None
+        assert result is None
         return
     expected = reader.of(read(root))
-    assert found in (expected, reader.scaled(expected, F(-1)))
+    assert result in (expected, reader.scaled(expected, F(-1)))
 
 
 @pytest.mark.parametrize(

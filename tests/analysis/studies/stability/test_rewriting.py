@@ -142,10 +142,10 @@ def test_a_filter_without_a_quotient_decides_alike(case, book):
     place = made.lowering.target(Target(better, cell))
     from xlmc.engine.passes.random_rounding import closure, evaluate, numbers_of
 
-    found = numbers_of(evaluate(made.dag, closure(made.dag, [place]), made.draws)[place], made.n)
+    result = numbers_of(evaluate(made.dag, closure(made.dag, [place]), made.draws)[place], made.n)
     e = made.number(made.node[cell])
-    assert (found == ((e >= -0.5) & (e < 0.25))).all()
-    assert 0 < found.sum() < made.n
+    assert (result == ((e >= -0.5) & (e < 0.25))).all()
+    assert 0 < result.sum() < made.n
 
 
 def test_text_has_brackets_where_they_are_needed(case):

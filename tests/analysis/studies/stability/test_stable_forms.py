@@ -98,16 +98,18 @@ def test_another_form(looked_at, formula, given, better):
 
 
 def test_formulas_of_other_cells_are_looked_into(looked_at):
-    found = looked_at("=(1-C1)/A1^2", [(1e-6, 1e-4)], C1="=COS(A1)")
-    assert [one.instead for one in found.findings if one.kind == "cancellation"] == ["=2*SIN(A1/2)^2/A1^2"]
-    found = looked_at("=SQRT(C1-C2^2)", [DATA] * 3, C1="=SUMSQ(A1:A3)/3", C2="=AVERAGE(A1:A3)")
-    assert [one.instead for one in found.findings if one.kind == "cancellation"] == ["=SQRT(DEVSQ(A1:A3)/COUNT(A1:A3))"]
+    result = looked_at("=(1-C1)/A1^2", [(1e-6, 1e-4)], C1="=COS(A1)")
+    assert [one.instead for one in result.findings if one.kind == "cancellation"] == ["=2*SIN(A1/2)^2/A1^2"]
+    result = looked_at("=SQRT(C1-C2^2)", [DATA] * 3, C1="=SUMSQ(A1:A3)/3", C2="=AVERAGE(A1:A3)")
+    assert [one.instead for one in result.findings if one.kind == "cancellation"] == [
+        "=SQRT(DEVSQ(A1:A3)/COUNT(A1:A3))"
+    ]
 
 
 def test_a_form_that_is_another_formula_is_not_proposed(looked_at):
     """It looks like a variance, and divides the sum's square by 5 where there are 3."""
-    found = looked_at("=(SUMSQ(A1:A3)-SUM(A1:A3)^2/3.0000000001)/3", [DATA] * 3)
-    assert all("DEVSQ" not in (one.instead or "") for one in found.findings)
+    result = looked_at("=(SUMSQ(A1:A3)-SUM(A1:A3)^2/3.0000000001)/3", [DATA] * 3)
+    assert all("DEVSQ" not in (one.instead or "") for one in result.findings)
 
 
 ARCCOSINES = [
@@ -153,8 +155,8 @@ def test_what_is_proposed_can_be_typed_into_the_cell(book):
         ({"_xlnm.Print_Area": "S!$A$1"}, "=2*SIN(A1/2)^2"),
     ]:
         ranges = {"angle": {"cell": "A1", "low": 1e-6, "high": 1e-5}}
-        found = stability(book(cells, ranges, {"f": "Z1"}, names=names), trials=500, seed=5)
-        assert [each.instead for each in found.findings if each.kind == "cancellation"] == [better]
+        result = stability(book(cells, ranges, {"f": "Z1"}, names=names), trials=500, seed=5)
+        assert [each.instead for each in result.findings if each.kind == "cancellation"] == [better]
 
 
 def test_a_form_is_found_for_every_cell_of_a_filled_down_column(tmp_path):
@@ -169,8 +171,8 @@ def test_a_form_is_found_for_every_cell_of_a_filled_down_column(tmp_path):
     book.active.add_table(Table(displayName="xlmc_assumptions", ref="A1:D4"))
     book.active.add_table(Table(displayName="xlmc_forecasts", ref="F1:G5"))
     book.save(tmp_path / "filled.xlsx")
-    found = stability(load(tmp_path / "filled.xlsx"), trials=500, seed=5)
-    offered = {each.name: each.instead for each in found.findings if each.kind == "cancellation"}
+    result = stability(load(tmp_path / "filled.xlsx"), trials=500, seed=5)
+    offered = {each.name: each.instead for each in result.findings if each.kind == "cancellation"}
     assert offered == {**{f"f{row}": f"=2*SIN(B{row}/2)^2" for row in (2, 3, 4)}, "r": None}
 
 
@@ -183,8 +185,8 @@ def test_a_form_that_is_worse_in_other_trials_stands_only_where_it_is_better(loo
     ]
     old = "A2*A1+A2*SQRT(A1^2+A3)"
     assert one.instead == f"=IF(A1<0,-(A2^2)*A3/(A1*A2-A2*SQRT(A1^2+A3)),{old})"
-    found = looked_at("=A2*A1+A2*SQRT(A1^2+A3)", [(-1e6, 1e3), (-1, 2), (1, 2)])
-    assert [each.instead for each in found.findings if each.kind == "cancellation"] == [None]
+    result = looked_at("=A2*A1+A2*SQRT(A1^2+A3)", [(-1e6, 1e3), (-1, 2), (1, 2)])
+    assert [each.instead for each in result.findings if each.kind == "cancellation"] == [None]
 
 
 def test_where_none_is_known_the_culprit_is_named_alone(looked_at):
@@ -197,18 +199,18 @@ def test_a_spread_that_is_all_rounding_is_wrong_though_the_number_is_nearly_righ
     """The variance is 100 to seven digits in every trial; how it varies is below what rounding leaves."""
     formula = "=(SUMSQ(A1:A3,D1:D2)-SUM(A1:A3,D1:D2)^2/5)/4"
     near = [(1e8 + 10, 1e8 + 10 + 1e-6), (1e8, 1e8 + 1e-6), (1e8 - 10, 1e8 - 10 + 1e-6)]
-    found = looked_at(formula, near, D1=1e8 + 3000.0, D2=1e8 - 3000.0)
-    (one,) = [each for each in found.findings if each.kind == "cancellation"]
+    result = looked_at(formula, near, D1=1e8 + 3000.0, D2=1e8 - 3000.0)
+    (one,) = [each for each in result.findings if each.kind == "cancellation"]
     assert one.level is Level.WRONG
     assert "its spread comes from rounding" in one.effect
     assert any(
         "the digits of 'f' cannot be trusted: its spread comes from rounding" in warning
-        for warning in found.run.warnings
+        for warning in result.run.warnings
     )
 
 
 @pytest.mark.parametrize("formula", ["=SIN(A1)^2+COS(A1)^2", "=A1/A1*3", "=A1*1.1/A1"])
 def test_a_constant_in_all_but_its_last_digit_is_no_spread(looked_at, formula):
-    found = looked_at(formula, [(1, 2)])
-    assert found.findings == ()
-    assert not found.run.warnings
+    result = looked_at(formula, [(1, 2)])
+    assert result.findings == ()
+    assert not result.run.warnings

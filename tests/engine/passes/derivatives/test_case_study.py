@@ -80,10 +80,10 @@ def test_gradient_and_hessian_of_the_case_study(model):
     shares = np.random.default_rng(1).random(len(ranges))
     points = [low + share * (high - low) for (low, high), share in zip(ranges, shares, strict=True)]
     inputs = dict(zip((a.name for a in model.live), points, strict=True))
-    found = derivatives(model, inputs, order=2)
-    assert not found.undefined
-    assert not found.numerical
-    cells = [*found.forecasts.values(), *found.filters.values()][:6]
+    result = derivatives(model, inputs, order=2)
+    assert not result.undefined
+    assert not result.numerical
+    cells = [*result.forecasts.values(), *result.filters.values()][:6]
     with mpmath.workdps(80):
         middle, first, second = differences([mpf(value) for value in inputs.values()])
     width = np.array([high - low for low, high in ranges])
@@ -98,10 +98,10 @@ def test_gradient_and_hessian_of_the_case_study(model):
 
 def test_second_order_taylor_of_the_case_study(model):
     """The means and standard deviations were computed independently: uniform assumptions, variance width² / 12."""
-    found = derivatives(model, {a.name: a.base for a in model.live}, order=2)
+    result = derivatives(model, {a.name: a.base for a in model.live}, order=2)
     ranges = np.array([(float(a.parameters["low"]), float(a.parameters["high"])) for a in model.live])
     variance = (ranges[:, 1] - ranges[:, 0]) ** 2 / 12
-    means = [one.value[0] + np.diag(one.hessian[0]) @ variance / 2 for one in found.forecasts.values()]
-    spreads = [np.sqrt(one.gradient[0] ** 2 @ variance) for one in found.forecasts.values()]
+    means = [one.value[0] + np.diag(one.hessian[0]) @ variance / 2 for one in result.forecasts.values()]
+    spreads = [np.sqrt(one.gradient[0] ** 2 @ variance) for one in result.forecasts.values()]
     assert np.round(means, 3).tolist() == pytest.approx([12.166, 23.771, 33.692, 8.897], abs=0.0011)
     assert np.round(spreads, 3).tolist() == pytest.approx([1.105, 2.143, 1.764, 4.165], abs=0.0011)

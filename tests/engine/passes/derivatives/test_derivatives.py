@@ -35,9 +35,9 @@ def test_a_chain_of_cells_with_a_filter(book):
     cells = BASE | {"C1": "=A1*EXP(B1)", "C2": "=SIN(C1)+A1", "C3": "=SQRT(C2^2+C1^2)", "D1": "=C1-C2"}
     model = book(cells, XY, {"f": "C3"}, {"closing": {"cell": "D1", "above": 0}})
     cell = Cell("S", 1, 3)
-    found = derivatives(model, {"x": [0.5, 1.5], "y": [0.25, -0.5]}, order=2, cells=[cell])
-    assert found.names == ("x", "y")
-    assert found.points.tolist() == [[0.5, 0.25], [1.5, -0.5]]
+    result = derivatives(model, {"x": [0.5, 1.5], "y": [0.25, -0.5]}, order=2, cells=[cell])
+    assert result.names == ("x", "y")
+    assert result.points.tolist() == [[0.5, 0.25], [1.5, -0.5]]
 
     def c1(x, y):
         return x * mpmath.exp(y)
@@ -46,13 +46,13 @@ def test_a_chain_of_cells_with_a_filter(book):
         return mpmath.sin(c1(x, y)) + x
 
     exact = {
-        "f": (found.forecasts["f"], lambda x, y: mpmath.hypot(c2(x, y), c1(x, y))),
-        "filter": (found.filters["closing"], lambda x, y: c1(x, y) - c2(x, y)),
-        "cell": (found.cells[cell], c1),
+        "f": (result.forecasts["f"], lambda x, y: mpmath.hypot(c2(x, y), c1(x, y))),
+        "filter": (result.filters["closing"], lambda x, y: c1(x, y) - c2(x, y)),
+        "cell": (result.cells[cell], c1),
     }
     with mpmath.workdps(50):
         for one, f in exact.values():
-            for i, point in enumerate(found.points):
+            for i, point in enumerate(result.points):
                 gradient = [mpmath.diff(f, tuple(point), n) for n in ((1, 0), (0, 1))]
                 assert one.gradient[i] == pytest.approx(np.array(gradient, float), rel=1e-10)
                 hessian = [
@@ -85,12 +85,12 @@ def test_a_chain_of_cells_with_a_filter(book):
     ],
 )
 def test_where_there_is_no_derivative_it_is_nan_with_a_reason(of, formula, x, function, why):
-    found = of(formula, {"x": [x, 3.3]}, order=2)
-    result = found.forecasts["f"]
+    results = of(formula, {"x": [x, 3.3]}, order=2)
+    result = results.forecasts["f"]
     assert np.isnan(result.gradient[0, 0])
     assert np.isnan(result.hessian[0, 0, 0])
-    assert found.undefined
-    first = next(one for one in found.undefined if one.first == 0)
+    assert results.undefined
+    first = next(one for one in results.undefined if one.first == 0)
     assert (str(first.cell), first.function) == ("S!Z1", function)
     assert why in first.why
 
@@ -103,14 +103,14 @@ def test_a_kink_takes_the_derivatives_of_its_own_assumption_only(of):
 
 @pytest.mark.parametrize("formula", ["=IF(A1>2,B1,B1)", "=IF(A1=2,B1^2/2,7)", "=VLOOKUP(A1,{1,10;2,20},2,FALSE)+B1"])
 def test_labels_stand_still(of, formula):
-    found = of(formula, {"x": [2.0, 2.0], "y": [1.0, 1.0]})
-    assert found.forecasts["f"].gradient[:, 1].tolist() == [1.0, 1.0]
+    result = of(formula, {"x": [2.0, 2.0], "y": [1.0, 1.0]})
+    assert result.forecasts["f"].gradient[:, 1].tolist() == [1.0, 1.0]
 
 
 def test_errors_of_a_branch_not_taken_are_not_told(of):
-    found = of("=IF(A1>0,LN(A1),SQRT(-A1))", {"x": [2.0, -4.0]})
-    assert found.forecasts["f"].gradient[:, 0] == pytest.approx([0.5, -0.25])
-    assert not found.undefined
+    result = of("=IF(A1>0,LN(A1),SQRT(-A1))", {"x": [2.0, -4.0]})
+    assert result.forecasts["f"].gradient[:, 0] == pytest.approx([0.5, -0.25])
+    assert not result.undefined
 
 
 @pytest.mark.parametrize(
@@ -128,8 +128,8 @@ def test_errors_of_a_branch_not_taken_are_not_told(of):
     ],
 )
 def test_kinks_inside_the_ranges(of, formula, x, function, ways, jumps):
-    found = of(formula, {"x": np.array(x, float)})
-    (kink,) = found.kinks
+    result = of(formula, {"x": np.array(x, float)})
+    (kink,) = result.kinks
     assert (str(kink.cell), kink.function, kink.branches, kink.jumps) == ("S!Z1", function, ways, jumps)
     assert kink.share == pytest.approx(1 - (2 if ways == 2 else 1) / 3)
     assert not of(formula, {"x": np.full(3, 2.3)}).kinks
@@ -151,9 +151,9 @@ def test_kinks_inside_the_ranges(of, formula, x, function, ways, jumps):
 def test_differences_are_as_near_as_they_say(of, formula, f, x, data):
     """The error estimated covers the true one, and is itself small: 1e-7 of the derivative, 1e-4 of the second."""
     points = data.draw(st.lists(st.floats(*x), min_size=2, max_size=2))
-    found = of(formula, {"x": points}, order=2, C1="=3*A1", C2="=3*A1", C3="=A1*3")
-    assert len(found.numerical) == 1
-    result = found.forecasts["f"]
+    results = of(formula, {"x": points}, order=2, C1="=3*A1", C2="=3*A1", C3="=A1*3")
+    assert len(results.numerical) == 1
+    result = results.forecasts["f"]
     with mpmath.workdps(50):
         first = np.array([mpmath.diff(f, point) for point in points], float)
         second = np.array([mpmath.diff(f, point, 2) for point in points], float)
@@ -167,35 +167,35 @@ def test_differences_are_as_near_as_they_say(of, formula, f, x, data):
 
 def test_differences_of_two_arguments_mix(of):
     points = {"x": [0.7, 1.9], "y": [1.1, 0.4]}
-    found = of("=NORM.DIST(A1,B1,2,TRUE)*A1", points, order=2).forecasts["f"]
+    result = of("=NORM.DIST(A1,B1,2,TRUE)*A1", points, order=2).forecasts["f"]
     with mpmath.workdps(50):
         for i, point in enumerate(zip(*points.values(), strict=True)):
             exact = mpmath.diff(lambda x, y: x * mpmath.ncdf((x - y) / 2), point, (1, 1))
-            assert found.hessian[i, 0, 1] == pytest.approx(float(exact), rel=1e-8)
-            assert abs(found.hessian[i, 0, 1] - float(exact)) <= 10 * found.hessian_error[i, 0, 1]
+            assert result.hessian[i, 0, 1] == pytest.approx(float(exact), rel=1e-8)
+            assert abs(result.hessian[i, 0, 1] - float(exact)) <= 10 * result.hessian_error[i, 0, 1]
 
 
 @pytest.mark.parametrize("formula", ["=COUNT(A1:B1)*A1", "=NPV(0.1,A1,B1)", "=FORECAST(3,A1:B1,{2,5})"])
 def test_what_does_not_bend_mixes_to_0(of, formula):
     """The mixed derivative is 0, and no more than rounding is known of it: that is not none."""
-    found = of(formula, {"x": [0.7, -1.9], "y": [1.1, 0.4]}, order=2).forecasts["f"]
-    assert (np.abs(found.hessian) <= 10 * found.hessian_error + 1e-11).all()
+    result = of(formula, {"x": [0.7, -1.9], "y": [1.1, 0.4]}, order=2).forecasts["f"]
+    assert (np.abs(result.hessian) <= 10 * result.hessian_error + 1e-11).all()
 
 
 def test_a_jump_has_no_difference(of):
     """MOD has a rule; WEEKNUM jumps between its days, and stands still within them."""
-    found = of("=WEEKDAY(A1)", {"x": [44000.5, 44001.0]})
-    assert found.forecasts["f"].gradient[0, 0] == 0.0
-    assert np.isnan(found.forecasts["f"].gradient[1, 0])
+    result = of("=WEEKDAY(A1)", {"x": [44000.5, 44001.0]})
+    assert result.forecasts["f"].gradient[0, 0] == 0.0
+    assert np.isnan(result.forecasts["f"].gradient[1, 0])
 
 
 def test_arrays_whose_size_varies(of):
     """Two of the cells are above x in one trial, three in the other."""
     dynamic = CellContent(None, Formula("SUM(FILTER(C1:C3,C1:C3>A1))", 1, 26, dynamic=True))
-    found = of(dynamic, {"x": [1.5, 0.5]}, order=2, C1=1.0, C2="=A1^2", C3="=A1*3").forecasts["f"]
-    assert found.value.tolist() == [6.75, 2.5]
-    assert found.gradient[:, 0].tolist() == [6.0, 3.0]
-    assert found.hessian[:, 0, 0].tolist() == [2.0, 0.0]
+    result = of(dynamic, {"x": [1.5, 0.5]}, order=2, C1=1.0, C2="=A1^2", C3="=A1*3").forecasts["f"]
+    assert result.value.tolist() == [6.75, 2.5]
+    assert result.gradient[:, 0].tolist() == [6.0, 3.0]
+    assert result.hessian[:, 0, 0].tolist() == [2.0, 0.0]
 
 
 def test_portions_change_nothing(of, monkeypatch):
@@ -219,7 +219,7 @@ def test_what_cannot_be_asked(book):
 
 
 def test_a_forecast_that_nothing_changes(of):
-    found = of("=3+4", {"x": [1.0, 2.0]}, order=2).forecasts["f"]
-    assert found.value.tolist() == [7.0, 7.0]
-    assert not found.gradient.any()
-    assert not found.hessian.any()
+    result = of("=3+4", {"x": [1.0, 2.0]}, order=2).forecasts["f"]
+    assert result.value.tolist() == [7.0, 7.0]
+    assert not result.gradient.any()
+    assert not result.hessian.any()

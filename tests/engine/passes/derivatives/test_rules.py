@@ -148,9 +148,9 @@ def _variance(numbers, lost):
     return mpmath.fsum((number - mean) ** 2 for number in numbers) / (len(numbers) - lost)
 
 
-def _close(found, exact):
+def _close(result, exact):
     """Within 1e-10, and within rounding where the exact derivative is 0."""
-    assert abs(found - exact) <= 1e-10 * abs(exact) + 1e-13, (found, float(exact))
+    assert abs(result - exact) <= 1e-10 * abs(exact) + 1e-13, (result, float(exact))
 
 
 @pytest.mark.parametrize("formula", ONE)
@@ -160,9 +160,9 @@ def test_one_argument(book, formula, data):
     f, (low, high) = ONE[formula]
     points = data.draw(st.lists(st.floats(low, high), min_size=2, max_size=2, unique=True))
     model = book(CELLS | {"Z1": formula}, {"x": WIDE["x"]}, {"f": "Z1"})
-    found = derivatives(model, {"x": points}, order=2)
-    result = found.forecasts["f"]
-    assert not found.numerical
+    results = derivatives(model, {"x": points}, order=2)
+    result = results.forecasts["f"]
+    assert not results.numerical
     assert not result.gradient_error.any()
     with mpmath.workdps(DIGITS):
         for i, x in enumerate(points):
@@ -178,9 +178,9 @@ def test_two_arguments(book, formula, data):
     f, *ranges = TWO[formula]
     points = [data.draw(st.lists(st.floats(*r), min_size=1, max_size=1)) for r in ranges]
     model = book(CELLS | {"Z1": formula}, WIDE, {"f": "Z1", "y": "B1", "x": "A1"})
-    found = derivatives(model, dict(zip("xy", points, strict=True)), order=2)
-    result = found.forecasts["f"]
-    assert not found.numerical
+    results = derivatives(model, dict(zip("xy", points, strict=True)), order=2)
+    result = results.forecasts["f"]
+    assert not results.numerical
     with mpmath.workdps(DIGITS):
         for i, point in enumerate(zip(*points, strict=True)):
             _close(result.value[i], f(*map(mpmath.mpf, point)))

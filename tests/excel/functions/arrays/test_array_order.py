@@ -75,8 +75,8 @@ cells = st.sampled_from([1.0, 2.0, -3.0, "a", "b", "", True, False, NA, DIV0, No
 def test_sorted_as_python_sorts(trials, falling):
     box = np.empty((len(trials), 6, 1), object)
     box[:, :, 0] = np.array(trials, object)
-    found = function_named("SORT")([from_objects(box), constant(1), constant(-1 if falling else 1)]).objects()
-    for row, trial in zip(found, trials, strict=True):
+    result = function_named("SORT")([from_objects(box), constant(1), constant(-1 if falling else 1)]).objects()
+    for row, trial in zip(result, trials, strict=True):
         filled = [item for item in trial if item is not None]
         expected = sorted(filled, key=_key, reverse=falling)
         assert row[:, 0].tolist() == expected + [None] * (6 - len(filled))
@@ -116,15 +116,15 @@ def test_others_have_none():
 def test_wide_data_of_many_trials_come_in_portions():
     x = np.random.default_rng(5).random((50_000, 50, 1))
     x[:, 7] = x[:, 3]
-    found = function_named("UNIQUE")([Value.of_numbers(x)])
-    assert np.array_equal(found.numbers, np.delete(x, 7, axis=1))
+    result = function_named("UNIQUE")([Value.of_numbers(x)])
+    assert np.array_equal(result.numbers, np.delete(x, 7, axis=1))
 
 
 @given(st.lists(st.tuples(cells, cells), min_size=1, max_size=6))
 def test_unique_rows_as_a_dictionary_has_them(rows):
     named = [tuple((type(item), item) for item in row) for row in rows]
-    found = function_named("UNIQUE")([from_objects(np.array([rows], object))]).objects()[0]
-    assert [tuple((type(item), item) for item in row) for row in found.tolist()] == list(dict.fromkeys(named))
+    result = function_named("UNIQUE")([from_objects(np.array([rows], object))]).objects()[0]
+    assert [tuple((type(item), item) for item in row) for row in result.tolist()] == list(dict.fromkeys(named))
 
 
 def test_filter_is_taken_trial_by_trial_where_what_stands_in_is_empty_in_some():

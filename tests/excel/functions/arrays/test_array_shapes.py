@@ -85,12 +85,12 @@ VARYING = Value.of_numbers(np.arange(12.0).reshape(2, 3, 2))
 
 
 def test_what_does_not_decide_on_the_shape_may_differ_between_trials():
-    found = function_named("SEQUENCE")([constant(1), constant(2), _numbers(1, 5), _numbers(1, 2)])
-    assert found.numbers.tolist() == [[[1, 2]], [[5, 7]]]
-    found = function_named("CHOOSEROWS")([VARYING, _numbers(1, 3), constant(-1)])
-    assert found.numbers.tolist() == [[[0, 1], [4, 5]], [[10, 11], [10, 11]]]
-    found = function_named("VSTACK")([VARYING, constant("x")]).objects()
-    assert found.tolist() == [[[0, 1], [2, 3], [4, 5], ["x", NA]], [[6, 7], [8, 9], [10, 11], ["x", NA]]]
+    result = function_named("SEQUENCE")([constant(1), constant(2), _numbers(1, 5), _numbers(1, 2)])
+    assert result.numbers.tolist() == [[[1, 2]], [[5, 7]]]
+    result = function_named("CHOOSEROWS")([VARYING, _numbers(1, 3), constant(-1)])
+    assert result.numbers.tolist() == [[[0, 1], [4, 5]], [[10, 11], [10, 11]]]
+    result = function_named("VSTACK")([VARYING, constant("x")]).objects()
+    assert result.tolist() == [[[0, 1], [2, 3], [4, 5], ["x", NA]], [[6, 7], [8, 9], [10, 11], ["x", NA]]]
 
 
 @pytest.mark.parametrize(

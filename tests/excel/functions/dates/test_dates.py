@@ -115,8 +115,8 @@ def test_parts_make_the_date_again(evaluate, day):
 def test_dates_count_from_1904_too(name, arguments, expected):
     values = [Value.of_numbers(np.array([float(x)])) for x in arguments]
     body = function_named(name).body
-    found = body(*values, date1904=True) if name == "EDATE" else body(*(v.numbers for v in values), date1904=True)
-    result = found if isinstance(found, Value) else Value.of_numbers(np.atleast_1d(found))
+    results = body(*values, date1904=True) if name == "EDATE" else body(*(v.numbers for v in values), date1904=True)
+    result = results if isinstance(results, Value) else Value.of_numbers(np.atleast_1d(results))
     assert result.objects().tolist() == [NUM if expected is None else expected]
 
 
@@ -125,9 +125,9 @@ def test_now_is_now(evaluate):
         return (moment - datetime(1899, 12, 30)) / timedelta(days=1)
 
     before = serial(datetime.now())
-    found = evaluate("NOW")
+    result = evaluate("NOW")
     after = serial(datetime.now())
-    assert before - 1e-9 <= found <= after + 1e-9
+    assert before - 1e-9 <= result <= after + 1e-9
     assert evaluate("TODAY") in (np.floor(before), np.floor(after))
     assert function_named("NOW").volatile
     assert function_named("TODAY").volatile

@@ -127,10 +127,10 @@ def test_dates_count_from_1904_too(name, expected):
     kind = np.array([1.0])
     body = function_named(name).body
     if name == "WEEKNUM":
-        found = body(Value.of_numbers(zero), Value.of_numbers(kind), date1904=True).numbers
+        result = body(Value.of_numbers(zero), Value.of_numbers(kind), date1904=True).numbers
     else:
-        found = body(*([zero, kind] if name == "WEEKDAY" else [zero]), date1904=True)
-    assert np.asarray(found).tolist() == [expected]
+        result = body(*([zero, kind] if name == "WEEKDAY" else [zero]), date1904=True)
+    assert np.asarray(result).tolist() == [expected]
 
 
 NUM_OF_WORKDAYS, VALUE_OF_WORKDAYS, NA = ErrorCode.NUM, ErrorCode.VALUE, ErrorCode.NA
@@ -213,8 +213,8 @@ def test_days_are_counted_one_by_one(evaluate, pattern, start, days, holidays):
 def test_trials_have_holidays_of_their_own_and_ranges_of_dates_are_taken():
     start = Value.of_numbers(np.array([[[41000.0, 41001.0]]]))
     holidays = Value.of_numbers(np.array([[[41001.0]], [[41002.0]]]))
-    found = function_named("WORKDAY")([start, Value.of_numbers(np.array([1.0])), holidays])
-    assert found.objects().tolist() == [[[41002.0, 41002.0]], [[41001.0, 41003.0]]]
+    result = function_named("WORKDAY")([start, Value.of_numbers(np.array([1.0])), holidays])
+    assert result.objects().tolist() == [[[41002.0, 41002.0]], [[41001.0, 41003.0]]]
 
 
 def test_dates_count_from_1904_too_workdays():

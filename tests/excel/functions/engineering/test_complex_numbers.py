@@ -97,10 +97,10 @@ parts = st.floats(-1e300, 1e300, allow_subnormal=False)
 @settings(max_examples=300, deadline=None)
 def test_what_is_written_reads_as_itself_to_15_digits(x, y, suffix):
     text = write(complex(x, y), suffix)
-    number, found = read(text)
+    number, result = read(text)
     assert math.isclose(number.real, x, rel_tol=1e-14, abs_tol=1e-300)
     assert math.isclose(number.imag, y, rel_tol=1e-14, abs_tol=1e-300)
-    assert found == (suffix if y else "")
+    assert result == (suffix if y else "")
     assert write(number, suffix) == text
 
 
@@ -241,8 +241,8 @@ coefficients = st.floats(-5, 5).filter(lambda x: abs(x) > 1e-3)
 )
 def test_functions_are_what_their_formulas_say(evaluate, name, formula, x, y):
     argument = write(complex(x, y), "i")
-    (found, _), (z, _) = read(evaluate(name, argument)), read(argument)
-    assert found == pytest.approx(formula(z), rel=1e-10, abs=1e-13)
+    (result, _), (z, _) = read(evaluate(name, argument)), read(argument)
+    assert result == pytest.approx(formula(z), rel=1e-10, abs=1e-13)
 
 
 def test_trials_and_constants_go_together():

@@ -93,13 +93,13 @@ BINARY += "Zi 1.1805916207174113e21, Yi 1.2089258196146292e24"
 
 
 def test_every_unit_is_as_much_of_its_base_as_it_is():
-    wanted, found = {}, {}
+    wanted, result = {}, {}
     for base, rows in IN_BASE.items():
         for row in rows.split(", "):
             *names, factor = row.split()
             wanted |= dict.fromkeys(names, float(factor))
-            found |= {name: _converted(name, base) for name in names}
-    assert found == pytest.approx(wanted, rel=1e-14, abs=0)
+            result |= {name: _converted(name, base) for name in names}
+    assert result == pytest.approx(wanted, rel=1e-14, abs=0)
     assert wanted.keys() == unit_conversion._UNITS.keys() - unit_conversion._TEMPERATURES.keys()
 
 
@@ -120,8 +120,8 @@ def test_every_prefix_is_as_much_as_it_is(listed, base, power, known):
 
 def _converted(unit, base):
     """How much of a base unit one of a unit is."""
-    (found,) = function_named("CONVERT")([constant(1.0), constant(unit), constant(base)]).numbers
-    return float(found)
+    (result,) = function_named("CONVERT")([constant(1.0), constant(unit), constant(base)]).numbers
+    return float(result)
 
 
 @pytest.mark.parametrize(("arguments", "expected"), TABLE)
@@ -144,8 +144,8 @@ def test_there_and_back(evaluate, unit, x):
 
 def test_units_may_differ_between_trials():
     units = from_objects(np.array(["cm", "km", "s"], object))
-    found = function_named("CONVERT")([Value.of_numbers(np.array([100.0, 2.0, 3.0])), units, constant("m")])
-    assert found.objects().tolist() == [1.0, 2000.0, NA]
+    result = function_named("CONVERT")([Value.of_numbers(np.array([100.0, 2.0, 3.0])), units, constant("m")])
+    assert result.objects().tolist() == [1.0, 2000.0, NA]
 
 
 EXCEL = {  # as Excel's help and tables of its constants have them

@@ -58,8 +58,8 @@ def test_the_yield_is_found_again(evaluate, bond):
         return  # by this basis nothing of the period is left to earn a yield in
     pr = evaluate("PRICE", *bond)
     if pr > 0:
-        found = evaluate("YIELD", settlement, maturity, rate, pr, redemption, frequency, basis)
-        assert found == pytest.approx(yield_, rel=1e-8)
+        result = evaluate("YIELD", settlement, maturity, rate, pr, redemption, frequency, basis)
+        assert result == pytest.approx(yield_, rel=1e-8)
 
 
 @given(bonds)
@@ -75,8 +75,8 @@ def test_modified_duration_is_the_slope_of_the_price_with_interest(evaluate, bon
         evaluate("PRICE", settlement, maturity, rate, yield_ + d, 100.0, frequency, basis) + accrued
         for d in (-step, 0, step)
     )
-    found = evaluate("MDURATION", settlement, maturity, rate, yield_, frequency, basis)
-    assert found == pytest.approx((low - high) / (2 * step) / middle, rel=2e-5, abs=1e-6)
+    result = evaluate("MDURATION", settlement, maturity, rate, yield_, frequency, basis)
+    assert result == pytest.approx((low - high) / (2 * step) / middle, rel=2e-5, abs=1e-6)
 
 
 def test_an_annuity_is_a_geometric_sum():
@@ -144,8 +144,8 @@ def test_the_yield_is_found_again_odd_first_bonds(evaluate, before, after, rate,
     pr = evaluate("ODDFPRICE", *dates, rate, yield_, 100.0, frequency, basis)
     assert isinstance(pr, float)
     if pr > 0:
-        found = evaluate("ODDFYIELD", *dates, rate, pr, 100.0, frequency, basis)
-        assert found == pytest.approx(yield_, rel=1e-8)
+        result = evaluate("ODDFYIELD", *dates, rate, pr, 100.0, frequency, basis)
+        assert result == pytest.approx(yield_, rel=1e-8)
 
 
 NUM_OF_ODD_LAST_BONDS, VALUE_OF_ODD_LAST_BONDS = ErrorCode.NUM, ErrorCode.VALUE
@@ -180,5 +180,5 @@ def test_values_odd_last_bonds(check, name, arguments, expected):
 @pytest.mark.parametrize("maturity", [40100.0, 40800.0])
 def test_the_yield_is_found_again_odd_last_bonds(evaluate, basis, frequency, maturity):
     pr = evaluate("ODDLPRICE", 40050.0, maturity, 39900.0, 0.05, 0.07, 100.0, frequency, basis)
-    found = evaluate("ODDLYIELD", 40050.0, maturity, 39900.0, 0.05, pr, 100.0, frequency, basis)
-    assert found == pytest.approx(0.07, rel=1e-10)
+    result = evaluate("ODDLYIELD", 40050.0, maturity, 39900.0, 0.05, pr, 100.0, frequency, basis)
+    assert result == pytest.approx(0.07, rel=1e-10)

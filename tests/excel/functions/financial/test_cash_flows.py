@@ -54,8 +54,8 @@ def test_values(check, name, arguments, expected):
 def test_the_rate_is_found_again(evaluate, rate, receipts):
     """What the receipts are worth at a rate is the price at which that is their return."""
     price = sum(x / (1 + rate) ** (i + 1) for i, x in enumerate(receipts))
-    found = evaluate("IRR", [[-price, *receipts]])
-    assert found == pytest.approx(rate, rel=1e-8, abs=1e-9)
+    result = evaluate("IRR", [[-price, *receipts]])
+    assert result == pytest.approx(rate, rel=1e-8, abs=1e-9)
 
 
 def test_trials_and_rates_of_many_cells():
@@ -106,8 +106,8 @@ def test_values_dated_cash_flows(check, name, arguments, expected):
 def test_the_rate_is_found_again_dated_cash_flows(evaluate, rate, receipts):
     dates = [[40000.0, *(40000.0 + days for _, days in receipts)]]
     price = evaluate("XNPV", rate, [[0.0, *(x for x, _ in receipts)]], dates)
-    found = evaluate("XIRR", [[-price, *(x for x, _ in receipts)]], dates)
-    assert found == pytest.approx(rate, rel=1e-8)
+    result = evaluate("XIRR", [[-price, *(x for x, _ in receipts)]], dates)
+    assert result == pytest.approx(rate, rel=1e-8)
 
 
 def test_dates_count_from_1904_too(value):

@@ -70,8 +70,8 @@ def test_settlement_lies_in_its_period(settlement, later, frequency):
 
 def test_dates_count_from_1904_too():
     values = [Value.of_numbers(np.array([x])) for x in (_serial(S) - 1462.0, _serial(M) - 1462.0, 2.0)]
-    found = function_named("COUPNCD").body(*values, date1904=True)
-    assert found.numbers.tolist() == [_serial("2011-05-15") - 1462]
+    result = function_named("COUPNCD").body(*values, date1904=True)
+    assert result.numbers.tolist() == [_serial("2011-05-15") - 1462]
 
 
 NUM_OF_ACCRUED_INTEREST, VALUE_OF_ACCRUED_INTEREST = ErrorCode.NUM, ErrorCode.VALUE

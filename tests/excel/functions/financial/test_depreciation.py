@@ -97,8 +97,8 @@ def test_declining_losses_are_those_of_one_period_after_the_other(evaluate, cost
     start = data.draw(st.integers(0, 4 * life - 1)) / 4
     end = data.draw(st.integers(int(4 * start), 4 * life)) / 4
     expected = _period_by_period(cost, share * cost, float(life), start, end, factor, switch)
-    found = evaluate("VDB", cost, share * cost, float(life), start, end, factor, not switch)
-    assert found == pytest.approx(expected, rel=1e-9, abs=1e-9 * cost)
+    result = evaluate("VDB", cost, share * cost, float(life), start, end, factor, not switch)
+    assert result == pytest.approx(expected, rel=1e-9, abs=1e-9 * cost)
 
 
 @given(st.floats(10, 1000), st.floats(0.01, 0.99), st.integers(1, 30), st.integers(1, 12))
@@ -108,8 +108,8 @@ def test_fixed_declining_losses_are_those_of_one_period_after_the_other(evaluate
     for period in range(1, life + (months < 12) + 1):
         part = {1: months / 12, life + 1: 1 - months / 12}.get(period, 1.0)
         loss = value * rate * part
-        found = evaluate("DB", cost, salvage, float(life), float(period), float(months))
-        assert found == pytest.approx(loss, rel=1e-9, abs=1e-12)
+        result = evaluate("DB", cost, salvage, float(life), float(period), float(months))
+        assert result == pytest.approx(loss, rel=1e-9, abs=1e-12)
         value -= loss
 
 

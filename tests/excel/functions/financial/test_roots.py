@@ -10,8 +10,8 @@ from xlmc.excel.functions.financial.roots import growth_root
 
 def test_the_nearest_change_of_sign_counts():
     """1 + r = 2 and 1 + r = 3, seen from three guesses."""
-    found = growth_root(lambda x: (np.exp(x) - 2) * (np.exp(x) - 3), np.array([0.5, 1.2, 5.0]))
-    assert found == pytest.approx([1.0, 1.0, 2.0], rel=1e-14)
+    result = growth_root(lambda x: (np.exp(x) - 2) * (np.exp(x) - 3), np.array([0.5, 1.2, 5.0]))
+    assert result == pytest.approx([1.0, 1.0, 2.0], rel=1e-14)
 
 
 @given(st.floats(-32, 32))
@@ -20,8 +20,8 @@ def test_any_rate_is_found_to_the_last_digits(x):
 
 
 def test_nothing_is_found_where_the_sign_stays_or_the_guess_is_no_rate():
-    found = growth_root(lambda x: np.where(np.arange(3) == 1, x * x + 1, x), np.array([0.1, 0.1, -1.0]))
-    assert found == pytest.approx([0.0, np.nan, np.nan], nan_ok=True, abs=1e-15)
+    result = growth_root(lambda x: np.where(np.arange(3) == 1, x * x + 1, x), np.array([0.1, 0.1, -1.0]))
+    assert result == pytest.approx([0.0, np.nan, np.nan], nan_ok=True, abs=1e-15)
 
 
 def test_trials_do_not_wait_for_each_other_to_the_bit():

@@ -48,9 +48,9 @@ TABLE = [
 
 @pytest.mark.parametrize(("arguments", "expected"), TABLE)
 def test_table(evaluate, arguments, expected):
-    found = evaluate("INDEX", *arguments)
-    assert found == expected
-    assert isinstance(found, bool) == isinstance(expected, bool)
+    result = evaluate("INDEX", *arguments)
+    assert result == expected
+    assert isinstance(result, bool) == isinstance(expected, bool)
 
 
 def _numbers(*items):
@@ -65,8 +65,8 @@ def test_row_and_column_may_differ_between_trials(value):
 
 def test_so_may_the_cells():
     cells = Value.of_numbers(np.arange(12.0).reshape(3, 2, 2))
-    found = function_named("INDEX")([cells, _numbers(1, 2, 1), _numbers(2, 1, 1)])
-    assert found.numbers.tolist() == [1, 6, 8]
+    result = function_named("INDEX")([cells, _numbers(1, 2, 1), _numbers(2, 1, 1)])
+    assert result.numbers.tolist() == [1, 6, 8]
 
 
 def test_a_cell_in_some_trials_and_a_column_in_others_have_no_one_shape(value):

@@ -155,8 +155,8 @@ def test_trials_together_are_the_trials_alone(call):
     together = function(arguments).objects()
     for i in range(3):
         alone = function([argument.take(np.array([i])) for argument in arguments]).objects()[0]
-        found = together[i if len(together) == 3 else 0]
-        assert np.array_equal(found, alone)
+        result = together[i if len(together) == 3 else 0]
+        assert np.array_equal(result, alone)
 
 
 def _numbers(x):
@@ -168,8 +168,8 @@ def test_many_keys_in_a_constant_table(near):
     rng = np.random.default_rng(2)
     table = np.stack([np.arange(2000.0), rng.random(2000)], axis=1)[None]
     wanted = rng.integers(0, 2000, 16_384) + 0.25 * near
-    found = function_named("VLOOKUP")([_numbers(wanted), _numbers(table), constant(2), constant(near)])
-    assert np.array_equal(found.numbers, table[0, wanted.astype(int), 1])
+    result = function_named("VLOOKUP")([_numbers(wanted), _numbers(table), constant(2), constant(near)])
+    assert np.array_equal(result.numbers, table[0, wanted.astype(int), 1])
 
 
 @pytest.mark.parametrize("order", [0, 1])
@@ -178,8 +178,8 @@ def test_many_keys_in_tables_of_their_own(order):
     table = np.sort(rng.random((8_192, 300)), axis=1)
     places = rng.integers(0, 300, 8_192)
     wanted = table[np.arange(8_192), places]
-    found = function_named("MATCH")([_numbers(wanted), _numbers(table[:, :, None]), constant(order)])
-    assert np.array_equal(found.numbers, places + 1)
+    result = function_named("MATCH")([_numbers(wanted), _numbers(table[:, :, None]), constant(order)])
+    assert np.array_equal(result.numbers, places + 1)
 
 
 DIV0_OF_XLOOKUP, NA_OF_XLOOKUP, NUM_OF_XLOOKUP, REF_OF_XLOOKUP, VALUE_OF_XLOOKUP = (
@@ -310,7 +310,7 @@ def test_many_keys_in_lists_of_their_own():
     rng = np.random.default_rng(4)
     cells, wanted = rng.random((8192, 400)), rng.random(8192)
     kinds = np.zeros((1, 1, 1), np.uint8)
-    found = function_named("XLOOKUP")(
+    result = function_named("XLOOKUP")(
         [
             Value(wanted, np.zeros(1, np.uint8)),
             Value(cells[:, :, None], kinds),
@@ -320,4 +320,4 @@ def test_many_keys_in_lists_of_their_own():
         ]
     )
     expected = np.where(cells >= wanted[:, None], cells, np.inf).min(axis=1)
-    assert np.array_equal(found.numbers, np.where(np.isinf(expected), -1, expected))
+    assert np.array_equal(result.numbers, np.where(np.isinf(expected), -1, expected))

@@ -45,8 +45,8 @@ def test_a_cell_of_what_stands_for_all():
 
 
 def test_side_by_side():
-    found = arrange([constant("a"), Value.of_numbers(np.array([1.0, 2.0])), constant(None), constant(True)], 2, 2)
-    assert found.objects().tolist() == [[["a", 1], [None, True]], [["a", 2], [None, True]]]
+    result = arrange([constant("a"), Value.of_numbers(np.array([1.0, 2.0])), constant(None), constant(True)], 2, 2)
+    assert result.objects().tolist() == [[["a", 1], [None, True]], [["a", 2], [None, True]]]
 
 
 def test_joined():
@@ -71,8 +71,8 @@ def test_portions_are_joined_in_their_order():
         assert y.shape == (1,)
         return Value.of_numbers(x.numbers + y.numbers)
 
-    found = by_portions(compute, [VARYING_OF_PORTIONS, constant(0.5)], WIDE)
-    assert found.numbers.tolist() == [i + 0.5 for i in range(N)]
+    result = by_portions(compute, [VARYING_OF_PORTIONS, constant(0.5)], WIDE)
+    assert result.numbers.tolist() == [i + 0.5 for i in range(N)]
     assert seen == [4] * 250
 
 
@@ -86,16 +86,16 @@ def test_constants_texts_and_numbers_go_together():
             return constant("first")
         return x if x.numbers[0] < 8 else constant(None)
 
-    found = by_portions(compute, [VARYING_OF_PORTIONS], WIDE).objects().tolist()
-    assert found[:9] == ["first"] * 4 + [4, 5, 6, 7] + [None]
-    assert set(found[8:]) == {None}
+    result = by_portions(compute, [VARYING_OF_PORTIONS], WIDE).objects().tolist()
+    assert result[:9] == ["first"] * 4 + [4, 5, 6, 7] + [None]
+    assert set(result[8:]) == {None}
 
 
 def test_texts_are_cut_with_the_rest():
     texts = from_objects(np.array([str(i) for i in range(N)], object))
-    found = by_portions(lambda x: x, [texts], WIDE)
-    assert found.texts.tolist() == texts.texts.tolist()
-    assert (found.kinds == TEXT).all()
+    result = by_portions(lambda x: x, [texts], WIDE)
+    assert result.texts.tolist() == texts.texts.tolist()
+    assert (result.kinds == TEXT).all()
 
 
 def test_portions_of_different_shapes_are_no_one_value():

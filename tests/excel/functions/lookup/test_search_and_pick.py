@@ -42,12 +42,16 @@ def test_a_search_finds_what_match_finds(numbers, order, data):
     search = Search.of(at, order)
     assert [search.finds(keys[i : i + 1]) for i in range(keys.size)] == (~missing).tolist()
     assert search.finds(keys) == (not missing.any())
-    found = keys[~missing]
-    if found.size:
-        assert search(found).tolist() == expected.numbers[~missing].tolist()
-        assert search(found, out=found.copy()).tolist() == expected.numbers[~missing].tolist()
-        own = found.copy()
-        for indices in (search.indices(found), search.indices(found, out=found.copy()), search.indices(own, out=own)):
+    result = keys[~missing]
+    if result.size:
+        assert search(result).tolist() == expected.numbers[~missing].tolist()
+        assert search(result, out=result.copy()).tolist() == expected.numbers[~missing].tolist()
+        own = result.copy()
+        for indices in (
+            search.indices(result),
+            search.indices(result, out=result.copy()),
+            search.indices(own, out=own),
+        ):
             assert (indices + 1).tolist() == expected.numbers[~missing].tolist()
 
 
@@ -95,6 +99,6 @@ def test_only_a_constant_row_or_column_is_searched(value):
 
 
 def test_the_position_of_a_key_without_one_is_its_error():
-    found = POSITION([of_trials([0.5, 1.5]), column([1.0, 2.0]), constant(1.0)])
-    assert found.objects().tolist()[1] == 1.0
-    assert found.errors[0] > 0
+    result = POSITION([of_trials([0.5, 1.5]), column([1.0, 2.0]), constant(1.0)])
+    assert result.objects().tolist()[1] == 1.0
+    assert result.errors[0] > 0

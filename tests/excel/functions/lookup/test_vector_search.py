@@ -43,8 +43,8 @@ def test_as_the_model_has_it(trials, side, last, same_list):
         box[place, 0] = rows[place]
     wanted = np.empty(len(trials), object)
     wanted[:] = [trial[0] for trial in trials]
-    found = nearest(from_objects(wanted), from_objects(box), side, last=last)
-    assert found.tolist() == [_place(trial[0], row, side, last) for trial, row in zip(trials, rows, strict=True)]
+    result = nearest(from_objects(wanted), from_objects(box), side, last=last)
+    assert result.tolist() == [_place(trial[0], row, side, last) for trial, row in zip(trials, rows, strict=True)]
 
 
 def test_wildcards_find_the_first_text_that_fits_or_the_last():
@@ -52,8 +52,8 @@ def test_wildcards_find_the_first_text_that_fits_or_the_last():
     box[0, :, 0] = ["xa", 1.0, "b1", "b*", "B2"]
     wanted = np.array(["b?", "b~*", "*", "?", "xa"], object)
     for last, expected in ((False, [2, 3, 0, -1, 0]), (True, [4, 3, 4, -1, 0])):
-        found = nearest(from_objects(wanted), from_objects(box), last=last, wildcards=True)
-        assert found.tolist() == expected
+        result = nearest(from_objects(wanted), from_objects(box), last=last, wildcards=True)
+        assert result.tolist() == expected
 
 
 def _place_halving(key, cells_halving, falling):
@@ -96,17 +96,17 @@ def _values(items, *shape):
 def test_as_plain_loops_have_it(trials, falling, same_list):
     lists = [trials[0][1:] if same_list else trial[1:] for trial in trials]
     vector = _values(lists[:1] if same_list else lists, 7, 1)
-    found = last_not_beyond(_values([trial[0] for trial in trials]), vector, falling=falling)
+    result = last_not_beyond(_values([trial[0] for trial in trials]), vector, falling=falling)
     expected = [_place_halving(trial[0], row, falling) for trial, row in zip(trials, lists, strict=True)]
-    assert found.tolist() == expected
+    assert result.tolist() == expected
 
 
 @pytest.mark.parametrize("size", [1, 2, 7, 100])
 def test_in_order_it_is_the_last_value_up_to_the_key(size):
     values = np.sort(np.random.default_rng(size).integers(0, size, size)) * 1.0
     wanted = np.arange(-1.0, size + 1, 0.5)
-    found = last_not_beyond(_values(wanted.tolist()), _values([values.tolist()], size, 1))
-    assert found.tolist() == (np.searchsorted(values, wanted, side="right") - 1).tolist()
+    result = last_not_beyond(_values(wanted.tolist()), _values([values.tolist()], size, 1))
+    assert result.tolist() == (np.searchsorted(values, wanted, side="right") - 1).tolist()
 
 
 def _place_downwards(key, row):
@@ -131,5 +131,5 @@ def _place_downwards(key, row):
 def test_downwards_as_a_plain_loop_has_it(trials, same_list):
     lists = [trials[0][1:] if same_list else trial[1:] for trial in trials]
     vector = _values(lists[:1] if same_list else lists, 7, 1)
-    found = before_first_smaller(_values([trial[0] for trial in trials]), vector)
-    assert found.tolist() == [_place_downwards(trial[0], row) for trial, row in zip(trials, lists, strict=True)]
+    result = before_first_smaller(_values([trial[0] for trial in trials]), vector)
+    assert result.tolist() == [_place_downwards(trial[0], row) for trial, row in zip(trials, lists, strict=True)]

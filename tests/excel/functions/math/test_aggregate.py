@@ -149,8 +149,8 @@ numbers = st.lists(st.floats(-1e6, 1e6), min_size=2, max_size=12)
 )
 def test_agrees_with_exact_fractions(name, reference, power, x):
     scale = max(abs(value) for value in x) ** power
-    found = function_named(name).body(np.array([x]), np.ones((1, len(x)), bool))[0]
-    assert found == pytest.approx(reference(x), rel=1e-12, abs=1e-13 * scale)
+    result = function_named(name).body(np.array([x]), np.ones((1, len(x)), bool))[0]
+    assert result == pytest.approx(reference(x), rel=1e-12, abs=1e-13 * scale)
 
 
 # Excel has no numbers below 2.2e-308: it makes them 0.

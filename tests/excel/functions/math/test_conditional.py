@@ -86,19 +86,19 @@ def test_criteria_and_cells_of_their_own_in_many_trials():
     criterion = np.array([f">={bound:g}" for bound in bounds], object)
     cells = Value(x[:, None, :], np.zeros((1, 1, 1), np.uint8))
     function = function_named("SUMIFS")
-    found = function([Value(y[:, None, :], np.zeros((1, 1, 1), np.uint8)), cells, from_objects(criterion)])
+    result = function([Value(y[:, None, :], np.zeros((1, 1, 1), np.uint8)), cells, from_objects(criterion)])
     expected = np.where(x >= bounds[:, None], y, 0.0).cumsum(axis=1)[:, -1]
-    assert found.shape == (n,)
-    assert np.array_equal(found.numbers, expected)
-    assert (found.kinds == NUMBER).all()
+    assert result.shape == (n,)
+    assert np.array_equal(result.numbers, expected)
+    assert (result.kinds == NUMBER).all()
 
 
 def test_many_trials_come_in_portions_and_in_their_order():
     x = np.arange(3_000_000, dtype=float).reshape(-1, 1, 3)
-    found = function_named("COUNTIF")([Value(x, np.zeros((1, 1, 1), np.uint8)), constant("<7")])
-    assert found.shape == (1_000_000,)
-    assert found.numbers[:4].tolist() == [3, 3, 1, 0]
-    assert not found.numbers[4:].any()
+    result = function_named("COUNTIF")([Value(x, np.zeros((1, 1, 1), np.uint8)), constant("<7")])
+    assert result.shape == (1_000_000,)
+    assert result.numbers[:4].tolist() == [3, 3, 1, 0]
+    assert not result.numbers[4:].any()
 
 
 few = st.sampled_from([0.0, 1.0, 2.0, "a", "B", "2", "", True, None, DIV0])

@@ -124,13 +124,13 @@ def test_table(check, name, arguments, expected):
 @example(170, 85)
 @settings(max_examples=200, deadline=None)
 def test_ways_to_choose_agree_with_whole_numbers(evaluate, n, k):
-    found = evaluate("COMBIN", n, k)
+    result = evaluate("COMBIN", n, k)
     exact = math.comb(n, k)
     if k > n or exact >= 2**1024:
-        assert found is NUM
+        assert result is NUM
     else:
-        assert found == pytest.approx(exact, rel=1e-13)
-        assert found == exact or exact > 2**50
+        assert result == pytest.approx(exact, rel=1e-13)
+        assert result == exact or exact > 2**50
 
 
 @given(st.lists(st.integers(0, 60), min_size=1, max_size=5))

@@ -106,16 +106,16 @@ def numerals(form):
 
 @pytest.mark.parametrize("form", [1, 4])
 def test_every_numeral_reads_as_its_number(form):
-    found = numerals(form)
-    assert function_named("ARABIC")([from_objects(found)]).objects().tolist() == EVERY.tolist()
-    assert max(map(len, found)) < 16
-    assert all(len(new) <= len(old) for new, old in zip(found, numerals(form - 1), strict=True))
+    result = numerals(form)
+    assert function_named("ARABIC")([from_objects(result)]).objects().tolist() == EVERY.tolist()
+    assert max(map(len, result)) < 16
+    assert all(len(new) <= len(old) for new, old in zip(result, numerals(form - 1), strict=True))
 
 
 def test_the_classic_form_reads_as_its_number_and_repeats_no_letter_four_times():
-    found = numerals(0)
-    assert function_named("ARABIC")([from_objects(found)]).objects().tolist() == EVERY.tolist()
-    for numeral in found:
+    result = numerals(0)
+    assert function_named("ARABIC")([from_objects(result)]).objects().tolist() == EVERY.tolist()
+    for numeral in result:
         assert not any(letter * 4 in numeral for letter in "IXCM")
         assert not any(letter * 2 in numeral for letter in "VLD")
 

@@ -74,7 +74,7 @@ def test_as_plain_functions(value):
 
 
 @pytest.mark.parametrize(
-    ("found", "nested", "filtered", "hidden"),
+    ("result", "nested", "filtered", "hidden"),
     [
         (subtotal_skips(9), True, True, False),
         (subtotal_skips(109), True, True, True),
@@ -88,8 +88,8 @@ def test_as_plain_functions(value):
         (aggregate_skips(7), False, True, True),
     ],
 )
-def test_what_a_call_leaves_out(found, nested, filtered, hidden):
-    assert found == Skips(nested, filtered, hidden)
+def test_what_a_call_leaves_out(result, nested, filtered, hidden):
+    assert result == Skips(nested, filtered, hidden)
 
 
 def test_the_function_may_differ_between_trials(value):

@@ -247,5 +247,5 @@ def test_against_scipy_over_the_whole_range_student_distribution(over_trials):
         (over_trials("T.INV", p, k), stats.t.ppf(p, k)),
         (over_trials("T.INV.2T", p, k), stats.t.isf(p / 2, k)),
     ]
-    for found, expected in pairs:
-        np.testing.assert_allclose(found, expected, rtol=1e-9)
+    for result, expected in pairs:
+        np.testing.assert_allclose(result, expected, rtol=1e-9)

@@ -147,7 +147,7 @@ def test_hypergeometric_sums_are_exact(evaluate, size, data):
     least, most = max(0, drawn - size + marked), min(drawn, marked)
     x = data.draw(st.integers(least, most))
     ways = [comb(marked, k) * comb(size - marked, drawn - k) for k in range(x + 1)]
-    mass, below = (float(Fraction(found, comb(size, drawn))) for found in (ways[x], sum(ways)))
+    mass, below = (float(Fraction(result, comb(size, drawn))) for result in (ways[x], sum(ways)))
     assert evaluate("HYPGEOM.DIST", x, drawn, marked, size, False) == pytest.approx(mass, rel=1e-12)
     assert evaluate("HYPGEOM.DIST", x, drawn, marked, size, True) == pytest.approx(below, rel=1e-12)
 

@@ -100,6 +100,6 @@ def test_tests_of_one_sample_are_scipys(evaluate, pairs, centre):
 
 
 def test_tails_and_kinds_may_be_arrays(evaluate):
-    found = evaluate("T.TEST", ONE, OTHER, [[1], [2], [0]], [[1, 2]])
-    assert found[2] == [NUM, NUM]
-    assert found[1] == pytest.approx([2 * p for p in found[0]])
+    result = evaluate("T.TEST", ONE, OTHER, [[1], [2], [0]], [[1, 2]])
+    assert result[2] == [NUM, NUM]
+    assert result[1] == pytest.approx([2 * p for p in result[0]])

@@ -98,9 +98,9 @@ def test_errors(check, name, arguments, expected):
 
 
 def test_a_range_of_arguments_gives_a_range_of_results(evaluate):
-    found = evaluate("NORM.S.DIST", [[0, -20]], [[True], [False]])
+    result = evaluate("NORM.S.DIST", [[0, -20]], [[True], [False]])
     expected = [[0.5, 2.7536241186062337e-89], [0.3989422804014327, 5.520948362159764e-88]]
-    assert np.array(found) == pytest.approx(np.array(expected), rel=1e-13)
+    assert np.array(result) == pytest.approx(np.array(expected), rel=1e-13)
 
 
 def test_against_scipy_over_the_whole_range(over_trials):
@@ -116,5 +116,5 @@ def test_against_scipy_over_the_whole_range(over_trials):
         (over_trials("LOGNORM.DIST", x, mean, deviation, 0), stats.norm.pdf(np.log(x), mean, deviation) / x),
         (over_trials("LOGNORM.INV", p, mean, deviation), np.exp(stats.norm.ppf(p, mean, deviation))),
     ]
-    for found, expected in pairs:
-        np.testing.assert_allclose(found, expected, rtol=1e-12, atol=1e-300)
+    for result, expected in pairs:
+        np.testing.assert_allclose(result, expected, rtol=1e-12, atol=1e-300)

@@ -61,8 +61,8 @@ def test_binomial_mass(arguments, expected):
 def test_binomial_mass_loses_no_digits_that_a_thousandth_part_of_the_numbers_has():
     """The product n·p of so large an n is rounded to 1e-16 of itself, which the distance from the mean multiplies."""
     x, n, p = 195998091.0, 824497081.0, 0.23782865394008143
-    found = binomial_mass(np.array(x), np.array(n - x), np.array(p), np.array(1 - p))
-    assert found == pytest.approx(3.1369369498624496792e-17, rel=5e-11)
+    result = binomial_mass(np.array(x), np.array(n - x), np.array(p), np.array(1 - p))
+    assert result == pytest.approx(3.1369369498624496792e-17, rel=5e-11)
 
 
 @pytest.mark.parametrize(

@@ -134,5 +134,5 @@ def test_the_rank_of_a_quantile_is_its_share(evaluate, x, share):
 
 def test_a_constant_sample_is_asked_at_a_place_for_every_trial(value):
     places = Value.of_numbers(np.array([0.0, 0.5, 2.0]))
-    found = function_named("PERCENTILE.INC")([value([[1, 2, 3]]), places]).objects()
-    assert found.tolist() == [1.0, 2.0, NUM]
+    result = function_named("PERCENTILE.INC")([value([[1, 2, 3]]), places]).objects()
+    assert result.tolist() == [1.0, 2.0, NUM]

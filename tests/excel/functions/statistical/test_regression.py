@@ -37,9 +37,9 @@ def turned(rows):
     return [list(column) for column in zip(*rows, strict=True)]
 
 
-def same(found, expected, rel):
-    assert len(found) == len(expected)
-    for row, wanted in zip(found, expected, strict=True):
+def same(result, expected, rel):
+    assert len(result) == len(expected)
+    for row, wanted in zip(result, expected, strict=True):
         assert [type(item) for item in row] == [type(item) for item in wanted]
         numbers = [(a, b) for a, b in zip(row, wanted, strict=True) if isinstance(b, float)]
         assert [a for a, _ in numbers] == pytest.approx([b for _, b in numbers], rel=rel)
@@ -75,9 +75,9 @@ def test_the_help_on_logest_and_growth(evaluate):
 
 
 def test_the_help_on_trend(evaluate):
-    found = evaluate("TREND", turned([SALES]))
-    assert [found[0][0], found[11][0]] == pytest.approx([133953.3333, 145153.3333], rel=1e-9)
-    assert len(found) == 12
+    result = evaluate("TREND", turned([SALES]))
+    assert [result[0][0], result[11][0]] == pytest.approx([133953.3333, 145153.3333], rel=1e-9)
+    assert len(result) == 12
     expected = [[146171.5152], [147189.6970], [148207.8788], [149226.0606], [150244.2424]]
     same(evaluate("TREND", turned([SALES]), None, [[13], [14], [15], [16], [17]]), expected, 1e-9)
 
@@ -114,20 +114,20 @@ TABLE = [
 
 @pytest.mark.parametrize(("name", "arguments", "expected"), TABLE)
 def test_table(evaluate, name, arguments, expected):
-    found = evaluate(name, *arguments)
+    result = evaluate(name, *arguments)
     if isinstance(expected, ErrorCode):
-        assert found == expected
+        assert result == expected
     else:
-        assert np.shape(found) == np.shape(expected)
-        for a, b in zip(np.ravel(np.array(found, object)), np.ravel(np.array(expected, object)), strict=True):
+        assert np.shape(result) == np.shape(expected)
+        for a, b in zip(np.ravel(np.array(result, object)), np.ravel(np.array(expected, object)), strict=True):
             assert a == (pytest.approx(b, rel=1e-13, abs=1e-14) if isinstance(b, float) else b)
 
 
 def test_through_zero_the_intercept_has_no_error(evaluate):
-    found = evaluate("LINEST", POINTS, [[1, 2, 3]], False, True)
+    result = evaluate("LINEST", POINTS, [[1, 2, 3]], False, True)
     slope, rest = 19 / 14, sum((y - 19 / 14 * x) ** 2 for x, y in zip((1, 2, 3), POINTS[0], strict=True))
-    same(found[:2], [[slope, 0.0], [(rest / 2 / 14) ** 0.5, NA]], 1e-12)
-    same(found[3:], [[(26 - rest) / (rest / 2), 2.0], [26 - rest, rest]], 1e-12)
+    same(result[:2], [[slope, 0.0], [(rest / 2 / 14) ** 0.5, NA]], 1e-12)
+    same(result[3:], [[(26 - rest) / (rest / 2), 2.0], [26 - rest, rest]], 1e-12)
 
 
 def test_several_variables_are_predicted_in_columns_and_rows(evaluate):
@@ -152,8 +152,8 @@ def test_a_shape_that_differs_between_trials_is_asked_for_trial_by_trial(value):
 
 def test_trials_have_lines_of_their_own(value):
     ys = Value.of_numbers(np.array([[[1.0, 2, 3]], [[2, 4, 9]]]))
-    found = function_named("LINEST")([ys, value([[1, 2, 3]])]).numbers
-    assert found == pytest.approx(np.array([[[1, 0]], [[3.5, -2]]]), abs=1e-14)
+    result = function_named("LINEST")([ys, value([[1, 2, 3]])]).numbers
+    assert result == pytest.approx(np.array([[[1, 0]], [[3.5, -2]]]), abs=1e-14)
 
 
 LONGLEY = np.array(
@@ -185,7 +185,7 @@ def fitted(y, x, free=True):
 
 
 def test_longley():
-    found = fitted(LONGLEY[:, 0], LONGLEY[:, 1:])
+    result = fitted(LONGLEY[:, 0], LONGLEY[:, 1:])
     slopes = [
         15.0618722713733,
         -0.0358191792925910,
@@ -202,14 +202,14 @@ def test_longley():
         0.226073200069370,
         455.478499142212,
     ]
-    deviation = np.sqrt(found.residual / found.freedom)
-    assert found.slopes[0] == pytest.approx(slopes, rel=1e-11)
-    assert found.intercept == pytest.approx(-3482258.63459582, rel=1e-11)
-    assert found.slope_spread[0] * deviation == pytest.approx(errors, rel=1e-11)
-    assert found.intercept_spread * deviation == pytest.approx(890420.383607373, rel=1e-11)
-    assert found.residual == pytest.approx(836424.055505915, rel=1e-11)
-    assert found.regression == pytest.approx(184172401.944494, rel=1e-11)
-    assert (found.used.item(), found.freedom.item()) == (6, 9)
+    deviation = np.sqrt(result.residual / result.freedom)
+    assert result.slopes[0] == pytest.approx(slopes, rel=1e-11)
+    assert result.intercept == pytest.approx(-3482258.63459582, rel=1e-11)
+    assert result.slope_spread[0] * deviation == pytest.approx(errors, rel=1e-11)
+    assert result.intercept_spread * deviation == pytest.approx(890420.383607373, rel=1e-11)
+    assert result.residual == pytest.approx(836424.055505915, rel=1e-11)
+    assert result.regression == pytest.approx(184172401.944494, rel=1e-11)
+    assert (result.used.item(), result.freedom.item()) == (6, 9)
 
 
 def _exact(y, x):
@@ -241,25 +241,25 @@ def test_planes_are_exact(rows):
     for design, free in ((with_one, True), (x, False)):
         if np.linalg.matrix_rank(np.array(design, float)) < len(design[0]):
             continue
-        found, exact = fitted(y, x, free), _exact(y, design)
-        coefficients = [*found.slopes[0], *([found.intercept.item()] if free else [])]
+        result, exact = fitted(y, x, free), _exact(y, design)
+        coefficients = [*result.slopes[0], *([result.intercept.item()] if free else [])]
         assert coefficients == pytest.approx(exact, rel=1e-10, abs=1e-11)
 
 
 def test_a_column_that_depends_on_others_is_left_out():
     x = np.array([[1, 2, 3], [2, 0, 2], [5, 1, 6], [7, 9, 16], [4, 4, 8.0]])
     y = x[:, 0] + 2 * x[:, 1] + 5
-    found = fitted(y, x)
-    assert found.slopes[0] == pytest.approx([1, 2, 0])
-    assert found.slope_spread[0, 2] == 0
-    assert (found.used.item(), found.freedom.item()) == (2, 2)
+    result = fitted(y, x)
+    assert result.slopes[0] == pytest.approx([1, 2, 0])
+    assert result.slope_spread[0, 2] == 0
+    assert (result.used.item(), result.freedom.item()) == (2, 2)
 
 
 def test_a_column_of_equal_numbers_is_the_intercept():
-    found = fitted([1, 2, 4], [[0.1], [0.1], [0.1]])
-    assert found.slopes[0] == [0]
-    assert found.intercept == pytest.approx(7 / 3)
-    assert found.freedom == 2
+    result = fitted([1, 2, 4], [[0.1], [0.1], [0.1]])
+    assert result.slopes[0] == [0]
+    assert result.intercept == pytest.approx(7 / 3)
+    assert result.freedom == 2
 
 
 def test_through_zero_or_not_is_asked_of_each_trial():

@@ -28,7 +28,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize(("before", "value"), [(before, value) for before, found in CASES.items() for value in found])
+@pytest.mark.parametrize(("before", "value"), [(before, value) for before, result in CASES.items() for value in result])
 def test_a_value(before, value):
     xml = with_values(SHEET.format(before).encode(), "sheet1.xml", {(2, 2): value})
     assert xml.decode() == SHEET.format(CASES[before][value])

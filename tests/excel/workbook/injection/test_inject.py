@@ -280,14 +280,14 @@ def _formats(styles, parts):
     """What each styled cell of the result sheets shows: number format, font and fill, by what they say."""
     lists = {name: styles.find(name).children for name in ("cellXfs", "fonts", "fills", "borders")}
     codes = {each.attributes["numFmtId"]: each.attributes["formatCode"] for each in styles.find("numFmts").children}
-    found = []
+    result = []
     for part in result_sheets(parts):
         for number in re.findall(rb'<c r="[A-Z]+[0-9]+" s="([0-9]+)"', parts[part]):
             style = lists["cellXfs"][int(number)].attributes
             places = (("fontId", "fonts"), ("fillId", "fills"), ("borderId", "borders"))
             text_of = [lists[where][int(style[what])].canonical() for what, where in places]
-            found.append((codes.get(style["numFmtId"], style["numFmtId"]), text_of))
-    return found
+            result.append((codes.get(style["numFmtId"], style["numFmtId"]), text_of))
+    return result
 
 
 PLAIN_STYLE = {"numFmtId": "0", "fontId": "0", "fillId": "0", "borderId": "0"}
@@ -315,7 +315,7 @@ def test_a_cell_whose_style_is_not_there_gets_none_of_the_results(build, results
     else:
         assert number == 70_000  # more styles than Excel takes
     used = b"".join(done[part] for part in result_sheets(done))
-    assert max(int(found) for found in re.findall(rb' s="([0-9]+)"', used)) < len(xfs)
+    assert max(int(result) for result in re.findall(rb' s="([0-9]+)"', used)) < len(xfs)
     assert f' s="{number}"'.encode() not in used
     assert '0.0 "km/h"' in [code for code, _ in _formats(parse_spans(done["xl/styles.xml"], "styles"), done)]
     again = inject(done, results)

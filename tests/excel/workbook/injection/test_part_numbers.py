@@ -43,7 +43,7 @@ def test_names_change_in_formulas(formula, expected):
 
 
 @pytest.mark.parametrize(
-    ("wanted", "taken", "found"),
+    ("wanted", "taken", "result"),
     [
         (["Results", "Trials"], ["Scene"], ["Results", "Trials"]),
         (["Results"], ["RESULTS"], ["Results (2)"]),
@@ -52,15 +52,15 @@ def test_names_change_in_formulas(formula, expected):
         (["x" * 31], ["X" * 31], ["x" * 27 + " (2)"]),
     ],
 )
-def test_sheet_names_are_free(wanted, taken, found):
-    assert list(free_names(wanted, taken).items()) == list(zip(wanted, found, strict=True))
+def test_sheet_names_are_free(wanted, taken, result):
+    assert list(free_names(wanted, taken).items()) == list(zip(wanted, result, strict=True))
 
 
 @pytest.mark.parametrize(
-    ("taken", "found"), [(set(), "Trials"), ({"trials"}, "Trials_2"), ({"trials", "trials_2"}, "Trials_3")]
+    ("taken", "result"), [(set(), "Trials"), ({"trials"}, "Trials_2"), ({"trials", "trials_2"}, "Trials_3")]
 )
-def test_table_names_are_free(taken, found):
-    assert free_table_name("Trials", taken) == found
+def test_table_names_are_free(taken, result):
+    assert free_table_name("Trials", taken) == result
 
 
 def test_quoted():

@@ -130,7 +130,7 @@ def test_names_change_in_formulas_links_and_text_boxes_only(built, home):
 
 
 @pytest.mark.parametrize(
-    ("wanted", "taken", "found"),
+    ("wanted", "taken", "result"),
     [
         ("xl/charts/chart1.xml", [], "xl/charts/chart1.xml"),
         ("xl/charts/chart1.xml", ["xl/charts/chart1.xml", "xl/charts/chart12.xml"], "xl/charts/chart13.xml"),
@@ -139,8 +139,8 @@ def test_names_change_in_formulas_links_and_text_boxes_only(built, home):
         ("xl/charts/chart1.xml", ["xl/charts/colors7.xml", "chart9"], "xl/charts/chart1.xml"),
     ],
 )
-def test_part_names_are_free(wanted, taken, found):
-    assert free_part_names([wanted], taken) == {wanted: found}
+def test_part_names_are_free(wanted, taken, result):
+    assert free_part_names([wanted], taken) == {wanted: result}
 
 
 @pytest.mark.parametrize(

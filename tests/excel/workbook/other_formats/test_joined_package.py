@@ -27,8 +27,8 @@ FORMULA = Formula("A1", *AT)
     ],
 )
 def test_a_number_that_was_shortened_is_whole_again(number, made, exact):
-    found = _exact(OldSheet("S", numbers={AT: number}), {AT: CellContent(made)}, True)
-    assert found == ({} if exact is None else {AT: exact})
+    result = _exact(OldSheet("S", numbers={AT: number}), {AT: CellContent(made)}, True)
+    assert result == ({} if exact is None else {AT: exact})
 
 
 @pytest.mark.parametrize(
@@ -72,9 +72,9 @@ def test_another_number_is_told_of(number, content):
     ],
 )
 def test_the_result_of_a_formula_is_what_excel_saved(saved, made, tells_logicals, exact):
-    found = _exact(OldSheet("S", results={AT: saved}), {AT: CellContent(made, FORMULA)}, tells_logicals)
-    assert found == ({} if exact is None else {AT: exact})
-    assert [type(each) for each in found.values()] == [type(exact)] * len(found)
+    result = _exact(OldSheet("S", results={AT: saved}), {AT: CellContent(made, FORMULA)}, tells_logicals)
+    assert result == ({} if exact is None else {AT: exact})
+    assert [type(each) for each in result.values()] == [type(exact)] * len(result)
 
 
 @pytest.mark.parametrize(

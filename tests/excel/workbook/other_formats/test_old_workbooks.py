@@ -66,9 +66,9 @@ DRAWINGS = {
 @pytest.mark.parametrize("how", DRAWINGS.values(), ids=list(DRAWINGS))
 def test_hidden_texts_are_read_from_drawings(how):
     chart = record(0x809, struct.pack("<HH12x", 0x600, 0x20)) + drawing([shape("Other", "x")]) + record(0x0A)
-    found = read_old_workbook(plain_book({"Empty": b"", "S": drawing(SHAPES, **how) + chart}))
-    assert [sheet.texts for sheet in found.sheets] == [[], [(*each, "Decisioneering:7.0.0.0") for each in TEXTS]]
-    assert not found.macros
+    result = read_old_workbook(plain_book({"Empty": b"", "S": drawing(SHAPES, **how) + chart}))
+    assert [sheet.texts for sheet in result.sheets] == [[], [(*each, "Decisioneering:7.0.0.0") for each in TEXTS]]
+    assert not result.macros
 
 
 def long_property(data):
@@ -135,8 +135,8 @@ def test_digits_and_texts_come_back(monkeypatch):
     assert {at: cells[at].value for at in exact} == exact
     assert cells[4, 1].value == 2 / 3
     assert cells[4, 1].formula.text == "A1/A3"
-    found = list(hidden_scripts(book.parts, read_structure(book.parts)))
-    assert found == [HiddenScript("S", *each) for each in TEXTS]
+    result = list(hidden_scripts(book.parts, read_structure(book.parts)))
+    assert result == [HiddenScript("S", *each) for each in TEXTS]
     assert ["converted from an old" in n.message or "macros" in n.message for n in book.notices] == [True, True]
 
 

@@ -229,9 +229,9 @@ needs_libreoffice = pytest.mark.skipif(bool(missing("soffice")), reason=missing(
 
 
 def run(*arguments):
-    found = CliRunner().invoke(command, [str(each) for each in arguments])
-    assert found.exit_code == 0, (found.output, found.exception)
-    return found.output
+    result = CliRunner().invoke(command, [str(each) for each in arguments])
+    assert result.exit_code == 0, (result.output, result.exception)
+    return result.output
 
 
 @needs_libreoffice

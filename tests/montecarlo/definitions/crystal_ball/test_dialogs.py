@@ -41,15 +41,15 @@ def read(tmp_path):
 
 
 def test_assumptions_and_forecasts_are_read_with_their_cells_and_names(read):
-    found = read(TOTAL, OFFSET, SKID)
-    assert [(a.name, str(a.cell), a.distribution, a.parameters, a.base) for a in found.assumptions] == [
+    result = read(TOTAL, OFFSET, SKID)
+    assert [(a.name, str(a.cell), a.distribution, a.parameters, a.base) for a in result.assumptions] == [
         ("Skid", "Sheet1!B2", "Normal", {"mean": 100.0, "std_dev": 15.0}, 100.0),
         ("Offset", "Sheet1!B3", "Lognormal", {"mean": 50.0, "std_dev": 10.0, "location": 0.0}, 50.0),
     ]
-    assert [(f.name, str(f.cell), f.units) for f in found.forecasts] == [("Total", "Sheet1!B5", "ft")]
-    assert not found.problems
-    assert not found.refused
-    assert any("no run preferences" in notice.message for notice in found.notices)
+    assert [(f.name, str(f.cell), f.units) for f in result.forecasts] == [("Total", "Sheet1!B5", "ft")]
+    assert not result.problems
+    assert not result.refused
+    assert any("no run preferences" in notice.message for notice in result.notices)
 
 
 FAMILIES = [
@@ -69,10 +69,10 @@ FAMILIES = [
 def test_families_go_by_their_text_and_those_not_met_in_genuine_books_are_pointed_out(read):
     cells = {S: {f"B{row}": 1 for row in range(1, len(FAMILIES) + 1)} | {"D1": "=SUM(B1:B20)"}}
     items = [Drawn(S, f"$B${row}", f"x{row}", f[0], f[1]) for row, f in enumerate(FAMILIES, 1)]
-    found = read(*items, Asked(S, "$D$1", "Sum"), cells=cells)
-    assert [a.distribution for a in found.assumptions] == [family for _, _, family, _ in FAMILIES]
-    expected = {str(notice.where) for notice in found.notices if "not yet met" in notice.message}
-    assert expected == {str(a.cell) for a, f in zip(found.assumptions, FAMILIES, strict=True) if not f[3]}
+    result = read(*items, Asked(S, "$D$1", "Sum"), cells=cells)
+    assert [a.distribution for a in result.assumptions] == [family for _, _, family, _ in FAMILIES]
+    expected = {str(notice.where) for notice in result.notices if "not yet met" in notice.message}
+    assert expected == {str(a.cell) for a, f in zip(result.assumptions, FAMILIES, strict=True) if not f[3]}
 
 
 UNREADABLE = {
@@ -95,12 +95,12 @@ UNREADABLE = {
 
 @pytest.mark.parametrize(("skid", "why"), UNREADABLE.values(), ids=list(UNREADABLE))
 def test_what_cannot_be_read_is_no_constant_but_costs_the_forecasts_that_need_it(read, skid, why):
-    found = read(skid, OFFSET, TOTAL, Asked(S, "$B$6", "Other"))
-    assert [f.name for f in found.forecasts] == ["Other"]
-    (refused,) = found.refused
+    result = read(skid, OFFSET, TOTAL, Asked(S, "$B$6", "Other"))
+    assert [f.name for f in result.forecasts] == ["Other"]
+    (refused,) = result.refused
     assert "'Total' needs Sheet1!B2" in refused.message
     assert why in refused.message
-    assert not found.problems
+    assert not result.problems
 
 
 def test_nothing_is_run_where_all_forecasts_need_what_cannot_be_read(read):
@@ -112,10 +112,10 @@ def test_cutoffs_and_parameters_may_come_from_cells(read):
     speed = Drawn(S, "$B$3", "=B9", "Normal", {"Mean": 20.0, "StdDev": 2.0}, {"LoCut": -1.0, "HiCut": 30.0})
     speed = replace(speed, references={2: "$B$2", 3: "$D$1*2"}, named_by='$A$3&" of "&$A$2')
     cells = {S: {**CELLS[S], "D1": 1}}
-    found = read(SKID, replace(speed, references={2: "$B$2", 3: 'Sheet1!$D$1*2&""'}), TOTAL, cells=cells)
-    assert found.assumptions[1].name == "Offset of Skid"
-    found = read(SKID, speed, TOTAL, cells=cells)
-    drawn = found.assumptions[1]
+    result = read(SKID, replace(speed, references={2: "$B$2", 3: 'Sheet1!$D$1*2&""'}), TOTAL, cells=cells)
+    assert result.assumptions[1].name == "Offset of Skid"
+    result = read(SKID, speed, TOTAL, cells=cells)
+    drawn = result.assumptions[1]
     assert str(drawn.parameters["mean"]) == "Sheet1!B2"
     assert [*drawn.cutoffs.values()] == [-1.0, 30.0]
 
@@ -124,14 +124,14 @@ def test_a_parameter_of_another_family_comes_from_the_cell_that_holds_its_number
     share = Drawn(
         S, "$B$2", "Share", "Beta", {"Min": 0.0, "Max": 9.0, "Alpha": 2.0, "Beta": 5.0}, references={5: "$D$1"}
     )
-    found = read(share, TOTAL, cells={S: {**CELLS[S], "B2": 1, "D1": 9}})
-    assert str(found.assumptions[0].parameters["high"]) == "Sheet1!D1"
+    result = read(share, TOTAL, cells={S: {**CELLS[S], "B2": 1, "D1": 9}})
+    assert str(result.assumptions[0].parameters["high"]) == "Sheet1!D1"
 
 
 def test_correlations_take_their_coefficient_from_the_cell(read):
     tied = Tied(S, "$D$1", SKID, OFFSET, 0.6)
-    (found,) = read(SKID, OFFSET, tied, TOTAL, cells={S: {**CELLS[S], "D1": -0.3}}).correlations
-    assert (found.first, found.second, found.value, str(found.row)) == ("Skid", "Offset", -0.3, "Sheet1!D1")
+    (result,) = read(SKID, OFFSET, tied, TOTAL, cells={S: {**CELLS[S], "D1": -0.3}}).correlations
+    assert (result.first, result.second, result.value, str(result.row)) == ("Skid", "Offset", -0.3, "Sheet1!D1")
     (typed,) = read(SKID, OFFSET, replace(tied, cell=""), TOTAL).correlations
     assert typed.value == 0.6
     assert not read(SKID, tied, TOTAL).correlations
@@ -139,18 +139,18 @@ def test_correlations_take_their_coefficient_from_the_cell(read):
 
 def test_cells_move_with_their_names_and_what_was_deleted_with_its_cell_is_left_out(read):
     moved = {f"CB_{object_guid(SKID).hex}": f"{S}!$B$9", f"CB_{object_guid(OFFSET).hex}": "#REF!"}
-    found = read(SKID, OFFSET, TOTAL, cells={S: {**CELLS[S], "B9": 1, "B5": "=B9"}}, names=moved)
-    assert [str(a.cell) for a in found.assumptions] == ["Sheet1!B9"]
-    assert any("'Offset' was deleted with its cell" in notice.message for notice in found.notices)
+    result = read(SKID, OFFSET, TOTAL, cells={S: {**CELLS[S], "B9": 1, "B5": "=B9"}}, names=moved)
+    assert [str(a.cell) for a in result.assumptions] == ["Sheet1!B9"]
+    assert any("'Offset' was deleted with its cell" in notice.message for notice in result.notices)
 
 
 def test_a_cell_whose_object_is_missing_is_no_constant(read, tmp_path):
     """The block with the assumption is damaged; its defined name still says that the cell held something."""
     cells = {S: {**CELLS[S], "D1": "=B2"}}
     blocks = [[SKID, TOTAL, Asked(S, "$D$1", "Skid alone")], [OFFSET]]
-    found = read(cells=cells, blocks=blocks, spoil=lambda shape, text: text[:-9] if shape.endswith("_2") else text)
-    assert [f.name for f in found.forecasts] == ["Skid alone"]
-    damage, missing, total = found.refused
+    result = read(cells=cells, blocks=blocks, spoil=lambda shape, text: text[:-9] if shape.endswith("_2") else text)
+    assert [f.name for f in result.forecasts] == ["Skid alone"]
+    damage, missing, total = result.refused
     assert "the block CB_Block_7.0.0.0:2 of the sheet 'Sheet1' is damaged" in damage.message
     assert "something of Sheet1!B3:" in missing.message
     assert "'Total' needs Sheet1!B3" in total.message
@@ -161,10 +161,10 @@ def test_a_forecast_or_a_correlation_that_is_missing_is_told(read):
     keep = {"fFilterPrefs": {"fUseFilter": True, "fFilterMin": 90.0, "fFilterAllOnDiscard": True}}
     gone = [Asked(S, "$B$6", "Other", prefs=keep), Tied(S, "$D$1", SKID, OFFSET, 0.6)]
     cells, blocks = {S: {**CELLS[S], "D1": 0.6}}, [[SKID, OFFSET, TOTAL], gone]
-    found = read(cells=cells, blocks=blocks, spoil=lambda shape, text: block([]) if shape.endswith("_2") else text)
-    (missing,) = found.refused
+    result = read(cells=cells, blocks=blocks, spoil=lambda shape, text: block([]) if shape.endswith("_2") else text)
+    (missing,) = result.refused
     assert "something of Sheet1!B6, Sheet1!D1:" in missing.message
-    assert [f.name for f in found.forecasts] == ["Total"]
+    assert [f.name for f in result.forecasts] == ["Total"]
 
 
 def test_one_cell_has_one_assumption(read):
@@ -175,33 +175,33 @@ def test_one_cell_has_one_assumption(read):
 
 
 def test_two_objects_of_one_name_are_told_apart_by_their_cells(read):
-    found = read(SKID, replace(OFFSET, name="skid"), TOTAL)
-    assert [a.name for a in found.assumptions] == ["Skid", "skid (Sheet1!B3)"]
+    result = read(SKID, replace(OFFSET, name="skid"), TOTAL)
+    assert [a.name for a in result.assumptions] == ["Skid", "skid (Sheet1!B3)"]
 
 
 def test_the_range_of_a_certainty_is_a_threshold(read):
     low = {"fCertaintyChartPrefs": {"fCertaintyRangeMin": 120.0}}
     both = {"fCertaintyChartPrefs": {"fCertaintyRangeMin": 120.0, "fCertaintyRangeMax": 150.0}}
     assert read(SKID, replace(TOTAL, prefs=low)).forecasts[0].threshold == 120.0
-    found = read(SKID, replace(TOTAL, prefs=both))
-    assert (found.forecasts[0].threshold, found.forecasts[0].asked) == (None, (120.0, 150.0))
-    assert any("the certainty of this range is reported" in notice.message for notice in found.notices)
+    result = read(SKID, replace(TOTAL, prefs=both))
+    assert (result.forecasts[0].threshold, result.forecasts[0].asked) == (None, (120.0, 150.0))
+    assert any("the certainty of this range is reported" in notice.message for notice in result.notices)
 
 
 def test_decision_variables_are_decisions_and_are_named_once(read):
-    found = read(SKID, TOTAL, Decided(S, "$B$3", "Share"))
-    (sentence,) = [notice for notice in found.notices if "decision" in notice.message]
+    result = read(SKID, TOTAL, Decided(S, "$B$3", "Share"))
+    (sentence,) = [notice for notice in result.notices if "decision" in notice.message]
     assert "'Share' (Sheet1!B3, 0 to 1 in steps of 0.05)" in sentence.message
-    (decision,) = found.decisions
+    (decision,) = result.decisions
     assert (decision.name, decision.cell, decision.between) == ("Share", Cell(S, 3, 2), None)
     assert decision.values == pytest.approx([0.05 * number for number in range(21)])
 
 
 def test_decision_variables_of_a_kind_that_was_not_met_keep_their_values(read):
-    found = read(SKID, TOTAL, Decided(S, "$B$3", "Share", kind=0))
-    (sentence,) = [notice for notice in found.notices if "Decision" in notice.message]
+    result = read(SKID, TOTAL, Decided(S, "$B$3", "Share", kind=0))
+    (sentence,) = [notice for notice in result.notices if "Decision" in notice.message]
     assert "keep the values of their cells: 'Share' (Sheet1!B3)" in sentence.message
-    assert not found.decisions
+    assert not result.decisions
 
 
 def test_the_answers_are_those_of_the_distributions(tmp_path):
@@ -217,12 +217,12 @@ def test_the_answers_are_those_of_the_distributions(tmp_path):
     drawing = next(name for name in parts if name.startswith("xl/drawings/comments"))
     parts[drawing] = parts[drawing].replace(b"<xml>", b"<xml><div>Excel leaves it open<br></div>")
     write_parts(path, parts)
-    found = simulated(load(path), 20_000)
+    result = simulated(load(path), 20_000)
     spread = 0.8 * math.sqrt(2 * 5 / 8) / 7
     mean, sd = 100 + 10 * (0.1 + 0.8 * 2 / 7), math.hypot(15, 10 * spread)
-    assert abs(found["Sum"].mean.value - mean) < 4 * found["Sum"].mean.error
-    assert abs(found["Sum"].standard_deviation.value - sd) < 4 * found["Sum"].standard_deviation.error
-    assert abs(found["Total"].mean.value - 180) < 4 * found["Total"].mean.error
+    assert abs(result["Sum"].mean.value - mean) < 4 * result["Sum"].mean.error
+    assert abs(result["Sum"].standard_deviation.value - sd) < 4 * result["Sum"].standard_deviation.error
+    assert abs(result["Total"].mean.value - 180) < 4 * result["Total"].mean.error
 
 
 FILTERS = {
@@ -241,11 +241,11 @@ FILTERS = {
 @pytest.mark.parametrize(("members", "limits", "only_for", "expected"), FILTERS.values(), ids=list(FILTERS))
 def test_a_filter_is_of_its_forecast_unless_it_says_all(read, members, limits, only_for, expected):
     filtered = replace(TOTAL, prefs={"fFilterPrefs": {"fUseFilter": True, **members}})
-    found = read(SKID, filtered, Asked(S, "$B$6", "Other"))
-    (each,) = (*found.filters, *found.forecast_filters)
+    result = read(SKID, filtered, Asked(S, "$B$6", "Other"))
+    (each,) = (*result.filters, *result.forecast_filters)
     assert (each.at_least, each.at_most, each.only_for) == (*limits, only_for)
-    assert bool(only_for) == bool(found.forecast_filters)
-    assert any("not yet met" in notice.message for notice in found.notices) == expected
+    assert bool(only_for) == bool(result.forecast_filters)
+    assert any("not yet met" in notice.message for notice in result.notices) == expected
 
 
 def test_a_filter_of_one_forecast_is_saved_and_repeated(tmp_path):
@@ -313,15 +313,15 @@ def test_precision_control_is_the_goal_of_a_run(tmp_path, prefs, setting, goal, 
         book[S].add_table(Table(displayName="xlmc_settings", ref="F1:G2"))
         book.save(path)
         book.vba_archive.close()
-    found = read_definitions(read_workbook(path), ENGINES)
-    ends = found.settings.stopping
+    result = read_definitions(read_workbook(path), ENGINES)
+    ends = result.settings.stopping
     width, relative, numbers, forecasts = goal
     if width is None:
-        assert found.settings == replace(Settings(), seed=found.settings.seed)
+        assert result.settings == replace(Settings(), seed=result.settings.seed)
     else:
         assert (ends.goal.tolerance, ends.goal.relative, ends.goal.numbers) == (width, relative, numbers)
         assert ends.forecasts == forecasts
-    (notice,) = [each.message for each in found.notices if "precision control" in each.message]
+    (notice,) = [each.message for each in result.notices if "precision control" in each.message]
     assert sentence in notice
     assert ("not yet met" in notice) == (width is not None)
 
@@ -329,14 +329,14 @@ def test_precision_control_is_the_goal_of_a_run(tmp_path, prefs, setting, goal, 
 def test_a_call_in_the_cell_of_an_old_assumption_wins(read):
     """Crystal Ball's own assumptions stand in constants: the formula is the newer one."""
     cells = {S: {**CELLS[S], "B2": "=RiskNormal(100,15)"}}
-    found = read(TOTAL, OFFSET, SKID, cells=cells)
-    assert {(a.name, a.source) for a in found.assumptions} == {
+    result = read(TOTAL, OFFSET, SKID, cells=cells)
+    assert {(a.name, a.source) for a in result.assumptions} == {
         ("Offset", "Crystal Ball"),
         ("Skid", "RiskNormal in the cell"),
     }
-    assert not found.problems
-    assert not found.refused
-    assert any("old assumption 'Skid' is left out" in notice.message for notice in found.notices)
+    assert not result.problems
+    assert not result.refused
+    assert any("old assumption 'Skid' is left out" in notice.message for notice in result.notices)
 
 
 def test_formulas_of_crystal_balls_own_sheet_make_no_answer_unusable(tmp_path):

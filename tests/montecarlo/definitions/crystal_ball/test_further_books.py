@@ -34,8 +34,8 @@ def by_reference(code, cell, **more):
     return Drawn(S, "$B$2", "Mass", "Normal", {"Mean": 100.0, "StdDev": 15.0}, references={code: cell}, **more)
 
 
-def assumptions(found):
-    return {a.name: (str(a.cell), {key: str(value) for key, value in a.parameters.items()}) for a in found.assumptions}
+def assumptions(result):
+    return {a.name: (str(a.cell), {key: str(value) for key, value in a.parameters.items()}) for a in result.assumptions}
 
 
 MASS = ("Model!B2", {"mean": "100.0", "std_dev": "15.0"})
@@ -173,12 +173,12 @@ def test_a_book(title, tmp_path):
     path = tmp_path / "book.xlsx"
     comments = [(next(iter(cells)), "C1", "a comment\nof two lines"), (next(iter(cells)), "B2", "<b>&amp;</b>")]
     save(path, cells, blocks, names=names, hide=title != "no hidden sheet", comments=comments)
-    found = read_definitions(read_workbook(path), ENGINES)
-    assert not found.problems
-    assert assumptions(found) == drawn
-    assert [f.name for f in found.forecasts] == answers
-    assert len(found.refused) == len(refused)
-    for error, why in zip(found.refused, refused, strict=True):
+    result = read_definitions(read_workbook(path), ENGINES)
+    assert not result.problems
+    assert assumptions(result) == drawn
+    assert [f.name for f in result.forecasts] == answers
+    assert len(result.refused) == len(refused)
+    for error, why in zip(result.refused, refused, strict=True):
         assert why in error.message
     run = simulated(load(path), 100)
     assert all(run[name].values.size == 100 for name in answers)
@@ -201,14 +201,14 @@ def test_a_sheet_that_was_copied_has_assumptions_of_its_own(tmp_path):
     book = own.sub(b"", parts["xl/workbook.xml"])
     parts["xl/workbook.xml"] = book.replace(b"</definedNames>", "".join(copied).encode() + b"</definedNames>")
     write_parts(path, parts)
-    found = read_definitions(read_workbook(path), ENGINES)
-    assert [(a.name, str(a.cell)) for a in found.assumptions] == [
+    result = read_definitions(read_workbook(path), ENGINES)
+    assert [(a.name, str(a.cell)) for a in result.assumptions] == [
         ("Mass", "Model!B2"),
         ("Drag", "Model!B3"),
         ("Mass ('Model (2)'!B2)", "'Model (2)'!B2"),
         ("Drag ('Model (2)'!B3)", "'Model (2)'!B3"),
     ]
-    assert [(c.first, c.second) for c in found.correlations] == [
+    assert [(c.first, c.second) for c in result.correlations] == [
         ("Mass", "Drag"),
         ("Mass ('Model (2)'!B2)", "Drag ('Model (2)'!B3)"),
     ]
@@ -252,6 +252,6 @@ def test_what_a_scenario_types_into_cells_leaves_the_dialogs_as_they_are(tmp_pat
     save(edited, {S: CELLS | {"D1": 30}}, [[wide, B, F]])
     model = load(path)
     typed = Typed(Cell(S, 1, 4), 30)
-    for found in (applied(model, [typed]), applied(applied(model, [Typed(Cell(S, 1, 4), 7)]), [typed])):
-        run, known, before = (simulate(each, trials=500)["Force"] for each in (found, load(edited), model))
+    for result in (applied(model, [typed]), applied(applied(model, [Typed(Cell(S, 1, 4), 7)]), [typed])):
+        run, known, before = (simulate(each, trials=500)["Force"] for each in (result, load(edited), model))
         assert run.values.tolist() == known.values.tolist() != before.values.tolist()

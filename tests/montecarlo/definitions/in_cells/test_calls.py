@@ -224,9 +224,9 @@ def understood(workbook):
 @pytest.mark.parametrize("formula", DRAWS)
 def test_what_is_drawn(understood, formula):
     family, parameters, *cutoffs = DRAWS[formula]
-    found = understood(formula)
-    assert found.problems == ()
-    (drawn,) = found.assumptions
+    result = understood(formula)
+    assert result.problems == ()
+    (drawn,) = result.assumptions
     assert drawn.distribution == drawn.family.name == family
     assert drawn.parameters == pytest.approx(parameters) if _all_numbers(parameters) else drawn.parameters == parameters
     assert [*map(drawn.cutoffs.get, ("lower_cutoff", "upper_cutoff"))] == (cutoffs or [None, None])
@@ -262,10 +262,10 @@ def test_data(understood, formula):
 
 
 def test_properties(understood):
-    found = understood('RiskNormal(5,2,RiskName("speed"),RiskUnits("mph"),RiskStatic(4),RiskSeed(1,2),RiskLock())')
-    (drawn,) = found.assumptions
+    result = understood('RiskNormal(5,2,RiskName("speed"),RiskUnits("mph"),RiskStatic(4),RiskSeed(1,2),RiskLock())')
+    (drawn,) = result.assumptions
     assert (drawn.name, drawn.units, drawn.base, drawn.frozen) == ("speed", "mph", 4.0, True)
-    assert [notice.message.split()[0] for notice in found.notices] == ["RiskSeed"]
+    assert [notice.message.split()[0] for notice in result.notices] == ["RiskSeed"]
 
 
 def test_a_name_may_stand_in_a_cell(understood):
@@ -293,8 +293,8 @@ def test_names_may_be_expressions_of_constants(understood, expression):
 
 @pytest.mark.parametrize("expression", ["A3&RiskNormal(0,1)", "RAND()", "NoSuch&1", "1/0", "A3&Nothing()"])
 def test_names_that_are_no_constant_texts_are_refused(understood, expression):
-    found = understood(f'RiskNormal(5,2,RiskName({expression}))+RiskOutput("x")', A3="labor")
-    (problem,) = found.problems
+    result = understood(f'RiskNormal(5,2,RiskName({expression}))+RiskOutput("x")', A3="labor")
+    (problem,) = result.problems
     assert problem.where == "S!I9"
 
 
@@ -337,8 +337,8 @@ def test_the_base_case_is_the_static_value_or_the_mean(understood, formula):
 
 
 def test_calls_are_counted_from_the_left_and_from_without(understood):
-    found = understood("RAND()+RiskNormal(RiskUniform(1,2),RiskTriang(1,2,3))*NORM.INV(RAND(),0,1)")
-    assert {a.name: a.distribution for a in found.assumptions} == {
+    result = understood("RAND()+RiskNormal(RiskUniform(1,2),RiskTriang(1,2,3))*NORM.INV(RAND(),0,1)")
+    assert {a.name: a.distribution for a in result.assumptions} == {
         "S!I9#1": "Uniform",
         "S!I9#2": "Normal",
         "S!I9#3": "Uniform",
@@ -348,16 +348,16 @@ def test_calls_are_counted_from_the_left_and_from_without(understood):
 
 
 def test_an_array_of_draws(understood):
-    found = understood("SUM(RANDARRAY(2,3,1,6,TRUE))")
-    assert [a.name for a in found.assumptions] == [f"S!I9#1({r},{c})" for r in (1, 2) for c in (1, 2, 3)]
-    assert {a.distribution for a in found.assumptions} == {"Discrete Uniform"}
+    result = understood("SUM(RANDARRAY(2,3,1,6,TRUE))")
+    assert [a.name for a in result.assumptions] == [f"S!I9#1({r},{c})" for r in (1, 2) for c in (1, 2, 3)]
+    assert {a.distribution for a in result.assumptions} == {"Discrete Uniform"}
 
 
 def test_one_name_for_two(workbook):
     cells = {"A1": '=RiskNormal(1,1,RiskName("x"))', "A2": '=RiskNormal(2,1,RiskName("X"))', "A3": "=RiskOutput()+A1"}
-    found = read_definitions(workbook(cells), ENGINES)
-    assert [a.name for a in found.assumptions] == ["x", "X (S!A2#1)"]
-    assert "Another assumption is called 'X'" in found.notices[0].message
+    result = read_definitions(workbook(cells), ENGINES)
+    assert [a.name for a in result.assumptions] == ["x", "X (S!A2#1)"]
+    assert "Another assumption is called 'X'" in result.notices[0].message
 
 
 @pytest.mark.parametrize(
@@ -367,9 +367,9 @@ def test_one_name_for_two(workbook):
 def test_lognorm_of_xlrisk(workbook, table, setting, family, noticed):
     cells = {"A1": "=RiskLogNorm(1,0.5)+RiskOutput()", "C1": "Setting", "D1": "Value"}
     cells |= {"C2": "Lognorm", "D2": setting} if setting else {"C2": "Seed", "D2": 1}
-    found = read_definitions(workbook(cells, tables=[table("xlmc_settings", "C1:D2", "Setting", "Value")]), ENGINES)
-    assert found.assumptions[0].distribution == family
-    assert any("XLRisk" in notice.message for notice in found.notices) == noticed
+    result = read_definitions(workbook(cells, tables=[table("xlmc_settings", "C1:D2", "Setting", "Value")]), ENGINES)
+    assert result.assumptions[0].distribution == family
+    assert any("XLRisk" in notice.message for notice in result.notices) == noticed
 
 
 REFUSED = {
@@ -436,8 +436,8 @@ def test_which_formulas_are_looked_at(text, holds):
 
 
 def test_no_answer_is_marked(workbook):
-    found = read_definitions(workbook({"A1": "=RAND()"}), ENGINES)
-    (problem,) = found.problems
+    result = read_definitions(workbook({"A1": "=RAND()"}), ENGINES)
+    (problem,) = result.problems
     assert "marks no cell as an answer" in problem.message
     assert "RiskOutput" in problem.hint
 
@@ -453,15 +453,15 @@ def test_outputs(workbook):
         "B6": '=RiskMean("spede")',
         "B7": "=RiskMean(Q7)",
     }
-    found = read_definitions(workbook(cells), ENGINES)
-    assert [(f.name, f.units) for f in found.forecasts] == [
+    result = read_definitions(workbook(cells), ENGINES)
+    assert [(f.name, f.units) for f in result.forecasts] == [
         ("Speed", "mph"),
         ("S!A2", "kg"),
         ("speed (S!A3)", ""),
         ("S!A4", ""),
     ]
-    assert [str(cell) for cell in found.results] == ["S!B4", "S!B5", "S!B6", "S!B7"]
-    expected = " ".join(notice.message for notice in found.notices)
+    assert [str(cell) for cell in result.results] == ["S!B4", "S!B5", "S!B6", "S!B7"]
+    expected = " ".join(notice.message for notice in result.notices)
     assert "S!A4 is taken for a forecast" in expected
     assert "no forecast is called so" in expected
     assert "which nothing computes" in expected
@@ -473,9 +473,9 @@ MATRIX = {"F1": 1.0, "F2": 0.5, "G2": 1.0, "F3": -0.2, "G3": 0.0, "H3": 1.0}
 def test_correlations(workbook):
     draws = {f"A{i}": f"=RiskNormal(0,1,RiskCorrmat($F$1:$H$3,{i}))" for i in (1, 2, 3)}
     other = {"B1": '=RiskNormal(0,1,RiskCorrmat(F1:H3,1,"b"))', "B2": '=RiskNormal(0,1,RiskCorrmat(F1:H3,2,"B"))'}
-    found = read_definitions(workbook({**MATRIX, **draws, **other, "C1": "=RiskOutput()+SUM(A1:B3)"}), ENGINES)
-    assert found.problems == ()
-    assert {(c.first, c.second): c.value for c in found.correlations} == {
+    result = read_definitions(workbook({**MATRIX, **draws, **other, "C1": "=RiskOutput()+SUM(A1:B3)"}), ENGINES)
+    assert result.problems == ()
+    assert {(c.first, c.second): c.value for c in result.correlations} == {
         ("S!A1#1", "S!A2#1"): 0.5,
         ("S!A1#1", "S!A3#1"): -0.2,
         ("S!B1#1", "S!B2#1"): 0.5,
@@ -504,8 +504,8 @@ TABLE = {"J1": "First", "K1": "Second", "L1": "Correlation", "J2": "S!A1#1", "K2
 def test_a_table_may_correlate_draws_in_cells(workbook, table):
     cells = {**TABLE, "A1": "=RAND()", "A2": "=RAND()", "A3": "=RiskOutput()+A1+A2"}
     tables = [table("xlmc_correlations", "J1:L2", "First", "Second", "Correlation")]
-    found = read_definitions(workbook(cells, tables=tables), ENGINES)
-    assert [(c.first, c.second, c.value) for c in found.correlations] == [("S!A1#1", "S!A2#1", 0.3)]
+    result = read_definitions(workbook(cells, tables=tables), ENGINES)
+    assert [(c.first, c.second, c.value) for c in result.correlations] == [("S!A1#1", "S!A2#1", 0.3)]
 
 
 def test_a_pair_is_correlated_once(workbook, table):
@@ -518,26 +518,26 @@ def test_a_pair_is_correlated_once(workbook, table):
 
 
 def test_crystal_balls_hidden_sheet_is_pointed_out(workbook):
-    found = read_definitions(workbook({"A1": "=RiskOutput()+RAND()"}, sheets=["CB_DATA_"]), ENGINES)
-    assert any("Crystal Ball's dialogs are lost" in notice.message for notice in found.notices)
+    result = read_definitions(workbook({"A1": "=RiskOutput()+RAND()"}, sheets=["CB_DATA_"]), ENGINES)
+    assert any("Crystal Ball's dialogs are lost" in notice.message for notice in result.notices)
 
 
 def test_an_answer_that_cannot_be_read_is_never_left_out(workbook):
-    found = read_definitions(workbook({"A1": '=RiskOutput("x")+RiskSplice(1)', "A2": "=RiskOutput()+RAND()"}), ENGINES)
-    (problem,) = found.problems
+    result = read_definitions(workbook({"A1": '=RiskOutput("x")+RiskSplice(1)', "A2": "=RiskOutput()+RAND()"}), ENGINES)
+    (problem,) = result.problems
     assert (problem.where, problem.message) == ("S!A1", "the function RiskSplice is not supported")
 
 
 def test_a_refused_cell_that_nothing_needs_is_left_alone(workbook):
-    found = read_definitions(workbook({"A1": "=RiskSplice(1)", "A2": "=RiskOutput()+RAND()"}), ENGINES)
-    assert found.problems == ()
+    result = read_definitions(workbook({"A1": "=RiskSplice(1)", "A2": "=RiskOutput()+RAND()"}), ENGINES)
+    assert result.problems == ()
 
 
 def test_a_shared_formula_draws_in_each_cell(workbook):
     master = Formula("RiskNormal(B1,$C$1)", 1, 1)
     cells = {f"A{row}": CellContent(1.0, master) for row in (1, 2, 3)}
-    found = read_definitions(workbook({**cells, "D1": "=RiskOutput()+SUM(A1:A3)"}), ENGINES)
-    assert {a.name: a.parameters["mean"] for a in found.assumptions} == {
+    result = read_definitions(workbook({**cells, "D1": "=RiskOutput()+SUM(A1:A3)"}), ENGINES)
+    assert {a.name: a.parameters["mean"] for a in result.assumptions} == {
         f"S!A{row}#1": Cell("S", row, 2) for row in (1, 2, 3)
     }
 

@@ -178,10 +178,10 @@ def test_books_run_unchanged(model, name):
     cells, answers = BOOKS[name]
     run = simulated(model(cells), trials=TRIALS, seed=999)
     for forecast, (mean, deviation) in answers.items():
-        found = run[forecast]
-        assert found.values.size == TRIALS
-        assert abs(found.mean.value - mean) < 5 * deviation / math.sqrt(TRIALS), forecast
-        assert abs(found.standard_deviation.value - deviation) < 5 * found.standard_deviation.error, forecast
+        result = run[forecast]
+        assert result.values.size == TRIALS
+        assert abs(result.mean.value - mean) < 5 * deviation / math.sqrt(TRIALS), forecast
+        assert abs(result.standard_deviation.value - deviation) < 5 * result.standard_deviation.error, forecast
 
 
 SHAPES = {
@@ -250,8 +250,8 @@ def test_rank_correlation_of_a_matrix(model):
     """Its standard error is below 1/√n."""
     cells, _ = BOOKS["matrix"]
     run = simulated(model(cells), trials=TRIALS, seed=999)
-    found = stats.spearmanr(run.inputs["S!A1#1"], run.inputs["S!A2#1"]).statistic
-    assert abs(found - 0.6) < 5 / math.sqrt(TRIALS)
+    result = stats.spearmanr(run.inputs["S!A1#1"], run.inputs["S!A2#1"]).statistic
+    assert abs(result - 0.6) < 5 / math.sqrt(TRIALS)
 
 
 def test_another_cell_leaves_the_draws_of_all_others_untouched(model):
@@ -267,8 +267,8 @@ def test_another_cell_leaves_the_draws_of_all_others_untouched(model):
 def test_draws_of_filled_down_cells_are_independent(model):
     cells = {f"A{i}": "=RAND()" for i in range(1, 5)} | {"B1": "=RiskOutput()+SUM(A1:A4)"}
     inputs = simulated(model(cells), trials=TRIALS, seed=999).inputs
-    found = np.corrcoef([inputs[f"S!A{i}#1"] for i in range(1, 5)])
-    assert np.abs(found - np.eye(4)).max() < 5 / math.sqrt(TRIALS)
+    result = np.corrcoef([inputs[f"S!A{i}#1"] for i in range(1, 5)])
+    assert np.abs(result - np.eye(4)).max() < 5 / math.sqrt(TRIALS)
 
 
 @pytest.mark.parametrize("name", ["nested", "matrix", "array"])
@@ -303,9 +303,9 @@ def test_an_array_of_draws_spills(workbook):
     array = Formula("RANDARRAY(3,1,0,6)", 1, 1, Area("S", 1, 1, 3, 1), dynamic=True)
     held = workbook({"A1": CellContent(1.0, array), "A2": 1.0, "A3": 1.0, "B1": "=RiskOutput()+SUM(A1:A3)"})
     run = simulated(CompiledModel(held, read_definitions(held, ENGINES), Path("book.xlsx")), trials=TRIALS, seed=999)
-    found = run["S!B1"]
-    assert abs(found.mean.value - 9) < 5 * 3 / math.sqrt(TRIALS)
-    assert abs(found.standard_deviation.value - 3) < 5 * found.standard_deviation.error
+    result = run["S!B1"]
+    assert abs(result.mean.value - 9) < 5 * 3 / math.sqrt(TRIALS)
+    assert abs(result.standard_deviation.value - 3) < 5 * result.standard_deviation.error
 
 
 @pytest.fixture
@@ -334,9 +334,9 @@ def array_formula(workbook):
     ],
 )
 def test_an_inverse_of_many_parameters_is_of_one_uniform_number(array_formula, text, mean, sd):
-    found = simulated(array_formula(text), trials=TRIALS, seed=999)["S!C1"]
-    assert abs(found.mean.value - mean) < 5 * sd / math.sqrt(TRIALS)
-    assert abs(found.standard_deviation.value - sd) < 5 * found.standard_deviation.error
+    result = simulated(array_formula(text), trials=TRIALS, seed=999)["S!C1"]
+    assert abs(result.mean.value - mean) < 5 * sd / math.sqrt(TRIALS)
+    assert abs(result.standard_deviation.value - sd) < 5 * result.standard_deviation.error
 
 
 @pytest.mark.parametrize(
@@ -481,8 +481,8 @@ def test_a_correlated_frequency(model):
         "A3": "=A1+A2+RiskOutput()",
     }  # fmt: skip
     inputs = simulated(model(cells), trials=TRIALS, seed=999).inputs
-    found = stats.spearmanr(inputs["S!A1#1"], inputs["S!A2#1"]).statistic
-    assert abs(found - 0.7) < 5 / math.sqrt(TRIALS)
+    result = stats.spearmanr(inputs["S!A1#1"], inputs["S!A2#1"]).statistic
+    assert abs(result - 0.7) < 5 / math.sqrt(TRIALS)
     for formula, message in (
         ("=RiskCompound(RiskPoisson(50),1,RiskCorrmat(F1:G2,1))", "RiskCompound itself cannot be correlated"),
         ("=RiskCompound(3,RiskNormal(1,1,RiskCorrmat(F1:G2,1)))", "The severity of RiskCompound cannot be correlated"),
@@ -512,9 +512,9 @@ def test_simtables_are_scenarios(model):
     own, *others = scenario_answers(run)
     assert own.forecasts[0].mean.value == run["S!A2"].mean.value
     for answer, difference in zip(others, (11, 32), strict=True):
-        found = answer.forecasts[0].differences["mean"]
-        assert found.value == pytest.approx(difference, rel=1e-12)
-        assert found.error < 1e-9
+        result = answer.forecasts[0].differences["mean"]
+        assert result.value == pytest.approx(difference, rel=1e-12)
+        assert result.error < 1e-9
     short = model({**cells, "A2": "=A1+RiskSimtable(C1:C2)+RiskOutput()"})
     with pytest.raises(XlmcError, match="RiskSimtable has 2 values, and value 3 is asked for"):
         model_of(short, "simulation 3")

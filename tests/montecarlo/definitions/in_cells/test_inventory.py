@@ -146,8 +146,8 @@ def test_every_call_has_a_test():
 @pytest.mark.parametrize("call", [*REFUSED, "RiskTSGARCH"])
 def test_what_is_refused_says_which_call_where_and_what_to_use(workbook, call):
     """In one line; RiskLibrary as a property of a draw, too."""
-    found = read_definitions(workbook({"I9": f"={call}(A1)", "Z1": "=RiskOutput()+I9+RAND()"}), ENGINES)
-    error = next(each for each in found.rewritten.values() if isinstance(each, FormulaError))
+    result = read_definitions(workbook({"I9": f"={call}(A1)", "Z1": "=RiskOutput()+I9+RAND()"}), ENGINES)
+    error = next(each for each in result.rewritten.values() if isinstance(each, FormulaError))
     assert re.match(f"(the function )?{call} is not (supported|computed by xlmc)$", error.message, re.IGNORECASE)
     assert error.where == "S!I9"
     assert error.hint

@@ -65,8 +65,8 @@ def test_what_is_drawn(model, cells, message, tau):
     assert any(message in notice.message for notice in made.notices)
     run = simulated(made, trials=TRIALS, seed=999)
     first, second = run.inputs["S!A1#1"], run.inputs["S!A2#1"]
-    found = stats.kendalltau(first[:4000], second[:4000]).statistic
-    assert abs(found - tau) < 4 * 2 * math.sqrt((1 - tau**2) / 4000)
+    result = stats.kendalltau(first[:4000], second[:4000]).statistic
+    assert abs(result - tau) < 4 * 2 * math.sqrt((1 - tau**2) / 4000)
     assert stats.kstest(first, stats.norm.cdf).pvalue > 1e-3
     assert stats.kstest(second, stats.expon.cdf).pvalue > 1e-3
     with pytest.raises(KeyError):
@@ -128,10 +128,10 @@ def test_partners(model):
     assert not any("nearest" in notice.message for notice in made.notices)
     inputs = simulated(made, trials=TRIALS, seed=999).inputs
     columns = [inputs[f"S!A{row}#1"] for row in (1, 2, 3)]
-    found = stats.spearmanr(np.stack(columns, axis=1)).statistic
+    result = stats.spearmanr(np.stack(columns, axis=1)).statistic
     implied = 6 / math.pi * math.asin(2 * math.sin(math.pi / 6 * 0.8) * math.sin(math.pi / 6 * -0.5))
     for (i, j), wanted in (((0, 1), 0.8), ((0, 2), -0.5), ((1, 2), implied)):
-        assert abs(found[i, j] - wanted) < 5 / math.sqrt(TRIALS)
+        assert abs(result[i, j] - wanted) < 5 / math.sqrt(TRIALS)
 
 
 @pytest.mark.parametrize(
@@ -160,8 +160,8 @@ def test_a_coefficient_may_be_a_formula_that_was_never_calculated(model):
     }  # fmt: skip
     inputs = simulated(model(cells), trials=TRIALS, seed=999).inputs
     for column, wanted in (("A", 0.6), ("B", -0.3)):
-        found = stats.spearmanr(inputs[f"S!{column}1#1"], inputs[f"S!{column}2#1"]).statistic
-        assert abs(found - wanted) < 5 / math.sqrt(TRIALS)
+        result = stats.spearmanr(inputs[f"S!{column}1#1"], inputs[f"S!{column}2#1"]).statistic
+        assert abs(result - wanted) < 5 / math.sqrt(TRIALS)
     for formula, message in (("=A1", "varies with an assumption"), ("=1+1", "Correlation (2) must lie between")):
         with pytest.raises(XlmcError, match=message.replace("(", r"\(").replace(")", r"\)")):
             model({**cells, "F2": formula})
@@ -198,9 +198,9 @@ def spearman_of(run, first, second):
 )
 def test_halves_that_contradict_each_other_are_told_and_the_lower_one_holds(model, above, expected):
     made = model({**MATRIX, **above})
-    found = [notice.message for notice in made.notices if "contradict each other" in notice.message]
-    assert len(found) == len(expected)
-    assert all(text in message for text, message in zip(expected, found, strict=True))
+    result = [notice.message for notice in made.notices if "contradict each other" in notice.message]
+    assert len(result) == len(expected)
+    assert all(text in message for text, message in zip(expected, result, strict=True))
     assert {(c.first, c.second): c.value for c in made.definitions.correlations} == {
         ("S!A1#1", "S!A2#1"): 0.9,
         ("S!A2#1", "S!A3#1"): 0.9,

@@ -25,11 +25,11 @@ CALLS = {
 @pytest.fixture
 def book(tmp_path):
     def made(cells):
-        found = openpyxl.Workbook()
-        found.active.title = "S"
+        result = openpyxl.Workbook()
+        result.active.title = "S"
         for address, content in cells.items():
-            found.active[address] = content
-        found.save(tmp_path / "book.xlsx")
+            result.active[address] = content
+        result.save(tmp_path / "book.xlsx")
         return tmp_path / "book.xlsx"
 
     return made

@@ -38,7 +38,7 @@ def call(formula):
 
 
 @pytest.mark.parametrize(
-    ("formula", "found"),
+    ("formula", "result"),
     [
         ("RiskMean(S!B9)", ResultCall("RiskMean", B9, "mean", None)),
         ("RISKMEAN(S!B9:B9)", ResultCall("RiskMean", B9, "mean", None)),
@@ -88,9 +88,9 @@ def call(formula):
         ("CB.IterationsFN()", ResultCall("CB.IterationsFN", None, "trials run", None)),
     ],
 )
-def test_what_a_call_asks_for(formula, found):
+def test_what_a_call_asks_for(formula, result):
     assert is_result(call(formula))
-    assert result_call(call(formula)) == found
+    assert result_call(call(formula)) == result
 
 
 @pytest.mark.parametrize("name", RESULTS)
@@ -98,10 +98,10 @@ def test_every_function_takes_its_cell_and_its_number(name):
     what, count = RESULTS[name]
     own = {"CB.GetRunPrefsFN": ["1"], "CB.IterationsFN": [], "RiskCorrel": ["S!B9", "S!B8", "1"]}
     arguments = own.get(name, ["S!B9", "0.5"][:count])
-    found = result_call(call(f"{name}({','.join(arguments)})"))
-    assert (found.function, found.what) == (name, what)
-    assert found.of == (B9 if "S!B9" in arguments else None)
-    assert (found.number is not None) == (arguments[-1:] != ["S!B9"] and bool(arguments))
+    result = result_call(call(f"{name}({','.join(arguments)})"))
+    assert (result.function, result.what) == (name, what)
+    assert result.of == (B9 if "S!B9" in arguments else None)
+    assert (result.number is not None) == (arguments[-1:] != ["S!B9"] and bool(arguments))
     if count:
         with pytest.raises(FormulaError, match=f"{name} has {count - 1} arguments"):
             result_call(call(f"{name}({','.join(arguments[:-1])})"))

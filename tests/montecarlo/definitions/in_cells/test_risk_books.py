@@ -211,12 +211,12 @@ def test_books_of_risk(tmp_path, name):
     for address, value in cells.items():
         sheet[address] = value
     book.save(tmp_path / "book.xlsx")
-    found = simulated(load(tmp_path / "book.xlsx"), trials=TRIALS, seed=999)[output]
-    assert found.values.size == TRIALS
-    assert abs(found.mean.value - mean) < 4 * deviation / math.sqrt(TRIALS)
-    assert abs(found.standard_deviation.value - deviation) < 4 * found.standard_deviation.error
+    result = simulated(load(tmp_path / "book.xlsx"), trials=TRIALS, seed=999)[output]
+    assert result.values.size == TRIALS
+    assert abs(result.mean.value - mean) < 4 * deviation / math.sqrt(TRIALS)
+    assert abs(result.standard_deviation.value - deviation) < 4 * result.standard_deviation.error
     for share, exact in percentiles.items():
-        below = np.mean(found.values <= exact)
+        below = np.mean(result.values <= exact)
         assert abs(below - share) < 4 * math.sqrt(share * (1 - share) / TRIALS), share
 
 

@@ -70,5 +70,5 @@ def test_cutoffs_as_probabilities_lie_between_0_and_1_and_rise(arguments, percen
 
 def test_only_the_second_truncation_is_behind_the_shift():
     for name, shifted in [("RiskTruncate", False), ("RiskTruncate2", True)]:
-        found = properties_of("RiskNormal", (call(name, ir.Number(1.0), ir.Number(2.0)),))
-        assert (found.lower, found.upper, found.shifted_cutoffs) == (ir.Number(1.0), ir.Number(2.0), shifted)
+        result = properties_of("RiskNormal", (call(name, ir.Number(1.0), ir.Number(2.0)),))
+        assert (result.lower, result.upper, result.shifted_cutoffs) == (ir.Number(1.0), ir.Number(2.0), shifted)

@@ -114,8 +114,8 @@ def test_two_rows_of_one_cell(only_problem):
 
 
 def test_several_mistakes_of_one_row_each_have_a_message(read):
-    found = read({"Inputs!D4": 0, "Inputs!H4": "wide", "Inputs!M4": 3, "Inputs!J4": ErrorCode.NUM})
-    assert [problem.where for problem in found.problems] == ["Inputs!M4", "Inputs!H4", "Inputs!J4", "Inputs!D4"]
+    result = read({"Inputs!D4": 0, "Inputs!H4": "wide", "Inputs!M4": 3, "Inputs!J4": ErrorCode.NUM})
+    assert [problem.where for problem in result.problems] == ["Inputs!M4", "Inputs!H4", "Inputs!J4", "Inputs!D4"]
 
 
 def test_a_copied_sheet_repeats_names_once_per_row(read, blocks):
@@ -128,15 +128,15 @@ def test_a_copied_sheet_repeats_names_once_per_row(read, blocks):
 class TestParameters:
     @pytest.mark.parametrize("cached", [6661.0, 6861.0])
     def test_a_formula_stays_a_cell(self, read, cached):
-        found = read({"Inputs!D2": ("=6600+61", cached)})
-        assert found.problems == ()
-        assert found.assumptions[0].parameters == {"low": Cell("Inputs", 2, 4), "high": 6861.0}
+        result = read({"Inputs!D2": ("=6600+61", cached)})
+        assert result.problems == ()
+        assert result.assumptions[0].parameters == {"low": Cell("Inputs", 2, 4), "high": 6861.0}
 
     def test_a_formula_without_cached_value_is_checked_by_the_run(self, read):
-        found = read({"Inputs!D2": "=6600+61", "Inputs!I4": "=1-1"})
-        assert found.problems == found.notices == ()
-        assert found.assumptions[0].parameters["low"] == Cell("Inputs", 2, 4)
-        assert found.assumptions[2].cutoffs["lower_cutoff"] == Cell("Inputs", 4, 9)
+        result = read({"Inputs!D2": "=6600+61", "Inputs!I4": "=1-1"})
+        assert result.problems == result.notices == ()
+        assert result.assumptions[0].parameters["low"] == Cell("Inputs", 2, 4)
+        assert result.assumptions[2].cutoffs["lower_cutoff"] == Cell("Inputs", 4, 9)
 
     @pytest.mark.parametrize(
         ("column", "row", "heading"),
@@ -158,15 +158,15 @@ class TestParameters:
         assert heading in missing.problems[0].message
 
     def test_two_columns_of_one_parameter_where_one_is_filled(self, read):
-        found = read({"Inputs!P1": "Min", "Inputs!P3": 181, "Inputs!D3": None})
-        assert found.problems == ()
-        assert found.assumptions[1].parameters["low"] == 181
+        result = read({"Inputs!P1": "Min", "Inputs!P3": 181, "Inputs!D3": None})
+        assert result.problems == ()
+        assert result.assumptions[1].parameters["low"] == 181
 
     @pytest.mark.parametrize("cutoffs", [(6700, None), (None, 6800), (6700, 6800)])
     def test_one_cutoff_is_enough(self, read, cutoffs):
-        found = read({"Inputs!I2": cutoffs[0], "Inputs!J2": cutoffs[1]})
-        assert found.problems == ()
-        assert tuple(map(found.assumptions[0].cutoffs.get, ("lower_cutoff", "upper_cutoff"))) == cutoffs
+        result = read({"Inputs!I2": cutoffs[0], "Inputs!J2": cutoffs[1]})
+        assert result.problems == ()
+        assert tuple(map(result.assumptions[0].cutoffs.get, ("lower_cutoff", "upper_cutoff"))) == cutoffs
 
     @pytest.mark.parametrize("typed", ["Triangular", "triang", " TRIANGLE "])
     def test_the_family_is_spelt_as_the_registry_does(self, read, typed):
@@ -184,21 +184,21 @@ NOTICES = [
 
 @pytest.mark.parametrize(("changes", "where", "message"), NOTICES)
 def test_notices(read, changes, where, message):
-    found = read(changes)
-    assert found.problems == ()
-    assert [str(notice) for notice in found.notices] == [f"{where}: {message}"]
-    assert len(found.assumptions) == 5
+    result = read(changes)
+    assert result.problems == ()
+    assert [str(notice) for notice in result.notices] == [f"{where}: {message}"]
+    assert len(result.assumptions) == 5
 
 
 @pytest.mark.parametrize("word", [True, "yes", "TRUE", "Yes "])
 def test_frozen(read, word):
-    found = read({"Inputs!M3": word})
-    assert found.problems == ()
-    assert [each.frozen for each in found.assumptions] == [False, True, False, False, True]
+    result = read({"Inputs!M3": word})
+    assert result.problems == ()
+    assert [each.frozen for each in result.assumptions] == [False, True, False, False, True]
 
 
 def test_cell_anywhere_else(read):
     changes = {"Inputs!P1": "Cell", "Inputs!B3": None, "Inputs!P3": ("=Model!C7", 186.0), "Model!C7": 186}
-    found = read(changes)
-    assert found.problems == ()
-    assert (found.assumptions[1].cell, found.assumptions[1].base) == (Cell("Model", 7, 3), 186)
+    result = read(changes)
+    assert result.problems == ()
+    assert (result.assumptions[1].cell, result.assumptions[1].base) == (Cell("Model", 7, 3), 186)

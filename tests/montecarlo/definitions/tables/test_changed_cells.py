@@ -67,8 +67,8 @@ def book(workbook, table):
 def test_a_change_is_typed_into_the_columns_that_say_it(book, old, new, columns, cells, lacking):
     kind = {Assumption: "xlmc_assumptions", Forecast: "xlmc_forecasts", Filter: "xlmc_filters"}[type(old)]
     kind = "xlmc_evidence" if old is EVIDENCE else kind
-    found, missing = cells_that_change(book(kind, Name=old.name, **columns), old, new)
-    assert {str(cell).removeprefix("S!"): value for cell, value in found.items()} == cells
+    result, missing = cells_that_change(book(kind, Name=old.name, **columns), old, new)
+    assert {str(cell).removeprefix("S!"): value for cell, value in result.items()} == cells
     assert missing == lacking
 
 

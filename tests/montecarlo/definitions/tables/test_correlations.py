@@ -35,25 +35,25 @@ def test_a_pair_may_stand_once_in_either_order(only_problem, blocks, pair):
 
 @pytest.mark.parametrize("value", [-1, 0, 0.5, 1])
 def test_names_are_given_as_defined(read, value):
-    (found,) = read({"Answers!A21": " weight", "Answers!B21": "ANGLE", "Answers!C21": value}).correlations
-    assert (found.first, found.second, found.value) == ("Weight", "Angle", value)
+    (result,) = read({"Answers!A21": " weight", "Answers!B21": "ANGLE", "Answers!C21": value}).correlations
+    assert (result.first, result.second, result.value) == ("Weight", "Angle", value)
 
 
 def test_a_frozen_assumption_does_not_correlate(read):
-    found = read({"Answers!B21": "Gravity"})
-    assert found.problems == ()
-    assert [str(notice) for notice in found.notices] == [
+    result = read({"Answers!B21": "Gravity"})
+    assert result.problems == ()
+    assert [str(notice) for notice in result.notices] == [
         "Answers!A21: 'Gravity' is frozen, so this correlation has no effect"
     ]
-    assert found.correlations == ()
+    assert result.correlations == ()
 
 
 def test_an_assumption_with_a_mistake_is_known_all_the_same(read):
-    found = read({"Inputs!D2": 7000})
-    assert [problem.where for problem in found.problems] == ["Inputs!D2"]
-    assert isinstance(found.correlations[0], Correlation)
+    result = read({"Inputs!D2": 7000})
+    assert [problem.where for problem in result.problems] == ["Inputs!D2"]
+    assert isinstance(result.correlations[0], Correlation)
 
 
 def test_without_assumptions(read):
-    found = read(tables={"xlmc_assumptions": None})
-    assert "Define the assumption" in found.problems[0].hint
+    result = read(tables={"xlmc_assumptions": None})
+    assert "Define the assumption" in result.problems[0].hint

@@ -39,9 +39,9 @@ def read(book):
     return lambda *args, **kwargs: read_definitions(book(*args, **kwargs), ENGINES)
 
 
-def only(found):
-    assert found.problems == (), [str(problem) for problem in found.problems]
-    return found.assumptions[0]
+def only(result):
+    assert result.problems == (), [str(problem) for problem in result.problems]
+    return result.assumptions[0]
 
 
 NAMES = [("Costs", "Data!$A$1:$C$2", None), ("Column", "Tests[Value]", None), ("Odd", "Data!A1*2", None)]
@@ -75,15 +75,15 @@ def test_text_is_pointed_out_as_going_stale(read):
 
 
 def test_a_range_without_a_sheet_lies_on_the_tables_own(read):
-    found = read(["Empirical", "K1:K2"], changes={"Inputs!K1": 9, "Inputs!K2": 11})
-    assert only(found).data.area == Area("Inputs", 1, 11, 2, 11)
+    result = read(["Empirical", "K1:K2"], changes={"Inputs!K1": 9, "Inputs!K2": 11})
+    assert only(result).data.area == Area("Inputs", 1, 11, 2, 11)
 
 
 def test_what_is_read(read):
-    found = only(read(["Custom", "Costs"], names=NAMES, changes={"Data!C1": None, "Data!A2": ("=15+1", 16.0)})).data
-    assert found.rows == ((5.0, 15.0, None), (Cell("Data", 2, 1), 21.0, 0.25))
-    assert list(found.cells) == [Cell("Data", 2, 1)]
-    assert found.cumulative is False
+    result = only(read(["Custom", "Costs"], names=NAMES, changes={"Data!C1": None, "Data!A2": ("=15+1", 16.0)})).data
+    assert result.rows == ((5.0, 15.0, None), (Cell("Data", 2, 1), 21.0, 0.25))
+    assert list(result.cells) == [Cell("Data", 2, 1)]
+    assert result.cumulative is False
 
 
 def test_switches(read):
@@ -191,17 +191,17 @@ def test_mistakes(read, row, changes, where, message, hint):
 
 
 def test_a_base_case_that_the_data_lack(read):
-    found = read(["Custom", "Costs"], names=NAMES, changes={"Inputs!B2": 99})
-    (notice,) = found.notices
+    result = read(["Custom", "Costs"], names=NAMES, changes={"Inputs!B2": 99})
+    (notice,) = result.notices
     assert notice.message == "The base case (99) lies outside the distribution (5 to 21)"
 
 
 def test_data_of_one_value(read):
-    found = read(["DUniform", "Tests[Value]"], changes={"Data!H3": 1, "Inputs!B2": 1})
-    (notice,) = found.notices
+    result = read(["DUniform", "Tests[Value]"], changes={"Data!H3": 1, "Inputs!B2": 1})
+    (notice,) = result.notices
     assert notice.message == "Every draw is 1: the assumption does not vary"
 
 
 def test_data_not_yet_calculated_are_left_to_the_run(read):
-    found = read(["Custom", "Costs"], names=NAMES, changes={"Data!A2": "=15+1"})
-    assert list(only(found).data.cells) == [Cell("Data", 2, 1)]
+    result = read(["Custom", "Costs"], names=NAMES, changes={"Data!A2": "=15+1"})
+    assert list(only(result).data.cells) == [Cell("Data", 2, 1)]

@@ -33,9 +33,9 @@ def rows(blocks, *row, headings=HEADINGS):
     ],
 )
 def test_values(read, blocks, row, values, between, listed):
-    found = read(rows(blocks, *row), PLACE)
-    assert found.problems == ()
-    (decision,) = found.decisions
+    result = read(rows(blocks, *row), PLACE)
+    assert result.problems == ()
+    (decision,) = result.decisions
     assert decision.values == pytest.approx(values)
     assert (decision.between, decision.listed) == (between, listed)
     assert (decision.name, decision.cell, decision.row) == ("Size", Cell("Model", 9, 4), Cell("Plan", 2, 1))
@@ -109,10 +109,10 @@ def test_a_cell_that_is_computed_is_no_decision(only_problem, blocks, cell, what
     ],
 )
 def test_steps(low, high, step, count, last):
-    found = values_between(low, high, step, AT)
-    assert len(found) == count
-    assert found[-1] == pytest.approx(last, abs=1e-15)
-    assert max(found) <= high
+    result = values_between(low, high, step, AT)
+    assert len(result) == count
+    assert result[-1] == pytest.approx(last, abs=1e-15)
+    assert max(result) <= high
 
 
 def test_too_many_steps():

@@ -37,9 +37,9 @@ def test_each_error_has_its_law(read, blocks):
     for given, law in LAWS:
         error, *sizes = given
         row = ["y", SPEED, 12, error, *sizes, *[None] * (4 - len(sizes)), "tape"]
-        found = read(rows(blocks, row), TABLE)
-        assert found.problems == found.notices == (), given
-        (item,), filter_ = found.evidence, found.filters[-1]
+        result = read(rows(blocks, row), TABLE)
+        assert result.problems == result.notices == (), given
+        (item,), filter_ = result.evidence, result.filters[-1]
         assert item.law == law, given
         assert (filter_.name, filter_.cell, filter_.because) == ("y", Cell("Model", 1, 2), "tape")
         limits = (law.low, law.high) if isinstance(law, Within) else (None, None)
@@ -86,11 +86,11 @@ def test_mistakes(only_problem, blocks, row, where, message, hint):
 def test_a_row_that_is_off_or_has_no_reading_is_said_and_changes_nothing(read, blocks):
     off = ["a", SPEED, 12, "whatever", *[None] * 5, "off"]
     empty = ["b", SPEED, None, None, None, None, 10]
-    found = read(rows(blocks, off, empty), {"xlmc_evidence": "Answers!A40:J42"})
-    assert found.problems == ()
-    assert [each.unused for each in found.evidence] == ["Use is off", "it has no reading"]
-    assert [each.name for each in found.filters] == ["e", "Positive"]
-    assert sorted(map(str, found.notices)) == [
+    result = read(rows(blocks, off, empty), {"xlmc_evidence": "Answers!A40:J42"})
+    assert result.problems == ()
+    assert [each.unused for each in result.evidence] == ["Use is off", "it has no reading"]
+    assert [each.name for each in result.filters] == ["e", "Positive"]
+    assert sorted(map(str, result.notices)) == [
         "Answers!A41: Evidence that is not used, because Use is off: 'a'",
         "Answers!A42: Evidence that is not used, because there is no reading: 'b'",
     ]
@@ -98,9 +98,9 @@ def test_a_row_that_is_off_or_has_no_reading_is_said_and_changes_nothing(read, b
 
 def test_two_items_may_be_about_one_cell_and_numbers_may_be_formulas(read, blocks):
     first = ["EDR", SPEED, ("=40+1", 41.0), "Normal", None, ("=1/2", 0.5), None, None, "EDR"]
-    found = read(rows(blocks, first, ["Video", SPEED, 42, None, 2]), {"xlmc_evidence": "Answers!A40:J42"})
-    assert found.problems == ()
-    assert list(found.evidence[0].cells) == [Cell("Answers", 41, 3), Cell("Answers", 41, 6)]
-    assert [str(notice) for notice in found.notices] == [
+    result = read(rows(blocks, first, ["Video", SPEED, 42, None, 2]), {"xlmc_evidence": "Answers!A40:J42"})
+    assert result.problems == ()
+    assert list(result.evidence[0].cells) == [Cell("Answers", 41, 3), Cell("Answers", 41, 6)]
+    assert [str(notice) for notice in result.notices] == [
         "Answers!I42: The evidence 'Video' gives no Source, the first thing that a reader asks for"
     ]

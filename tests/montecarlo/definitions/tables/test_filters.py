@@ -49,17 +49,17 @@ def test_mistakes(only_problem, changes, where, message, hint):
     ],
 )
 def test_limits(read, changes, limits):
-    found = read(changes)
-    assert found.problems == found.notices == ()
-    first = found.filters[0]
+    result = read(changes)
+    assert result.problems == result.notices == ()
+    first = result.filters[0]
     assert (first.at_least, first.at_most, first.above, first.below) == limits
 
 
 @pytest.mark.parametrize("cached", [True, False, 1.0, 0.0, 0.4, "ok", None, ErrorCode.DIV0])
 def test_what_excel_saved_of_a_formula_says_nothing_of_the_filter(read, cached):
-    found = read({"Model!B3": ("=B1>0", cached)})
-    assert found.problems == found.notices == ()
-    assert found.filters[1].at_least is found.filters[1].below is None
+    result = read({"Model!B3": ("=B1>0", cached)})
+    assert result.problems == result.notices == ()
+    assert result.filters[1].at_least is result.filters[1].below is None
 
 
 @pytest.mark.parametrize(
@@ -71,23 +71,23 @@ def test_what_excel_saved_of_a_formula_says_nothing_of_the_filter(read, cached):
     ],
 )
 def test_notices(read, changes, where, message):
-    found = read(changes)
-    assert found.problems == ()
-    (notice,) = found.notices
+    result = read(changes)
+    assert result.problems == ()
+    (notice,) = result.notices
     assert str(notice.where) == where
     assert message in notice.message
-    assert len(found.filters) == 2
+    assert len(result.filters) == 2
 
 
 def test_without_the_column_because(read):
-    found = read(tables={"xlmc_filters": "Answers!A10:F12"})
-    assert [str(notice.where) for notice in found.notices] == ["Answers!A11", "Answers!A12"]
+    result = read(tables={"xlmc_filters": "Answers!A10:F12"})
+    assert [str(notice.where) for notice in result.notices] == ["Answers!A11", "Answers!A12"]
 
 
 def test_a_filter_may_be_an_assumption(read):
-    found = read({"Answers!B11": ("=Inputs!B2", 6761.0), BELOW: None})
-    assert found.problems == found.notices == ()
-    assert found.filters[0].cell == Cell("Inputs", 2, 2)
+    result = read({"Answers!B11": ("=Inputs!B2", 6761.0), BELOW: None})
+    assert result.problems == result.notices == ()
+    assert result.filters[0].cell == Cell("Inputs", 2, 2)
 
 
 TABLE = {"xlmc_checks": "Answers!A40:D42"}
@@ -102,9 +102,9 @@ def rows(blocks):
 
 
 def test_a_check_is_read_with_its_reason_and_notes(read, rows):
-    found = read(rows(["Forward", ("=Model!B3", True), "FALSE: backward", "Lee"]), {"xlmc_checks": "Answers!A40:D41"})
-    assert found.problems == found.notices == ()
-    (check,) = found.checks
+    result = read(rows(["Forward", ("=Model!B3", True), "FALSE: backward", "Lee"]), {"xlmc_checks": "Answers!A40:D41"})
+    assert result.problems == result.notices == ()
+    (check,) = result.checks
     assert (check.name, check.cell, check.row) == ("Forward", Cell("Model", 3, 2), Cell("Answers", 41, 1))
     assert check.because == "FALSE: backward"
     assert check.notes == {"Witness": "Lee"}
@@ -112,9 +112,9 @@ def test_a_check_is_read_with_its_reason_and_notes(read, rows):
 
 def test_a_value_column_is_the_cell_itself_and_a_copied_table_counts(read, rows):
     cells = rows(["Forward", ("=Model!B1>0", True), "moves"], headings=("Name", "Value", "Because"))
-    found = read(cells, {"xlmc_checks3": "Answers!A40:C41"})
-    assert found.problems == ()
-    assert found.checks[0].cell == Cell("Answers", 41, 2)
+    result = read(cells, {"xlmc_checks3": "Answers!A40:C41"})
+    assert result.problems == ()
+    assert result.checks[0].cell == Cell("Answers", 41, 2)
 
 
 @pytest.mark.parametrize(
@@ -141,24 +141,24 @@ def test_limits_are_refused_because_nobody_would_test_them(only_problem, rows):
 
 
 def test_a_constant_check_is_pointed_out(read, rows):
-    found = read({**rows(["Always", ("=Model!D9", True)]), "Model!D9": True}, {"xlmc_checks": "Answers!A40:D41"})
-    assert found.problems == ()
-    assert "does not depend on anything" in found.notices[0].message
+    result = read({**rows(["Always", ("=Model!D9", True)]), "Model!D9": True}, {"xlmc_checks": "Answers!A40:D41"})
+    assert result.problems == ()
+    assert "does not depend on anything" in result.notices[0].message
 
 
 def test_a_table_without_rows_is_pointed_out(read, rows):
-    found = read(rows([None, None]), {"xlmc_checks": "Answers!A40:D41"})
-    assert found.problems == found.checks == ()
-    (notice,) = found.notices
+    result = read(rows([None, None]), {"xlmc_checks": "Answers!A40:D41"})
+    assert result.problems == result.checks == ()
+    (notice,) = result.notices
     assert str(notice) == "Answers!A40: The table xlmc_checks holds no check"
 
 
 def test_a_filter_may_be_for_some_forecasts_only(read, only_problem):
     heading = {"Answers!H10": "Only for", "Answers!H11": " speed ; Speed"}
     table = {"xlmc_filters": "Answers!A10:H12"}
-    found = read(heading, table)
-    assert [(each.name, each.only_for) for each in found.forecast_filters] == [("e", ("Speed",))]
-    assert [each.name for each in found.filters] == ["Positive"]
+    result = read(heading, table)
+    assert [(each.name, each.only_for) for each in result.forecast_filters] == [("e", ("Speed",))]
+    assert [each.name for each in result.filters] == ["Positive"]
     only_problem("Answers!A11", "Only for names 'Sped'", "Speed", {**heading, "Answers!H11": "Sped"}, table)
 
 

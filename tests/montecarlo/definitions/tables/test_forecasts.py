@@ -53,16 +53,16 @@ def test_two_rows_of_one_name_or_cell(only_problem, blocks, row, where, message)
     ("typed", "share"), [(None, 0.51), (51, 0.51), (90, 0.9), (2.5, 0.025), (("=50+1", 51.0), 0.51)]
 )
 def test_range(read, typed, share):
-    found = read({"Answers!D2": typed})
-    assert found.problems == found.notices == ()
-    assert found.forecasts[0].central == share
+    result = read({"Answers!D2": typed})
+    assert result.problems == result.notices == ()
+    assert result.forecasts[0].central == share
 
 
 @pytest.mark.parametrize(("typed", "share", "text"), [(0.51, 0.51, "51"), (0.9, 0.9, "90"), (1, 0.01, "1")])
 def test_a_range_that_may_be_a_share(read, typed, share, text):
-    found = read({"Answers!D2": typed})
-    assert found.forecasts[0].central == share
-    assert [str(notice) for notice in found.notices] == [f"Answers!D2: Range % {typed} is read as {text} %"]
+    result = read({"Answers!D2": typed})
+    assert result.forecasts[0].central == share
+    assert [str(notice) for notice in result.notices] == [f"Answers!D2: Range % {typed} is read as {text} %"]
 
 
 def test_the_settings_give_the_range_of_rows_that_have_none(read, blocks):
@@ -72,10 +72,10 @@ def test_the_settings_give_the_range_of_rows_that_have_none(read, blocks):
 
 
 def test_threshold_and_notes(read):
-    found = read({"Answers!E2": ("=5*7", 35.0), "Answers!C1": "Asked by", "Answers!C2": "the court"})
-    assert found.forecasts[0].threshold == 35
-    assert found.forecasts[0].notes == {"Asked by": "the court"}
-    assert found.forecasts[0].units == ""
+    result = read({"Answers!E2": ("=5*7", 35.0), "Answers!C1": "Asked by", "Answers!C2": "the court"})
+    assert result.forecasts[0].threshold == 35
+    assert result.forecasts[0].notes == {"Asked by": "the court"}
+    assert result.forecasts[0].units == ""
 
 
 @pytest.mark.parametrize(
@@ -84,9 +84,9 @@ def test_threshold_and_notes(read):
 )
 def test_the_range_of_a_certainty(read, blocks, low, high, asked):
     columns = blocks("Answers!F1", [["Certainty from", "Certainty to"], [low, high]])
-    found = read(columns, tables={"xlmc_forecasts": "Answers!A1:G2"})
-    assert not found.problems
-    assert found.forecasts[0].asked == asked
+    result = read(columns, tables={"xlmc_forecasts": "Answers!A1:G2"})
+    assert not result.problems
+    assert result.forecasts[0].asked == asked
 
 
 def test_a_certainty_of_no_range(only_problem, blocks):
@@ -121,9 +121,9 @@ WIDE = {"xlmc_forecasts": "Answers!A1:H2"}
 )
 def test_how_an_answer_is_stated(read, blocks, row, report_to, kind, role):
     row = [("=2/4", 0.5) if each == "=2/4" else each for each in row]
-    found = read(stated(blocks, *row), tables=WIDE)
-    assert not found.problems
-    [forecast] = found.forecasts
+    result = read(stated(blocks, *row), tables=WIDE)
+    assert not result.problems
+    [forecast] = result.forecasts
     assert (forecast.report_to, forecast.kind, forecast.role) == (report_to, kind, role)
     assert not forecast.notes
 
@@ -152,28 +152,28 @@ def test_how_an_answer_is_not_stated(only_problem, blocks, row, where, message, 
 
 @pytest.mark.parametrize("value", [41.5, True])
 def test_a_constant_is_pointed_out(read, value):
-    found = read({"Model!B1": value})
-    assert found.problems == ()
-    assert [str(notice) for notice in found.notices] == [
+    result = read({"Model!B1": value})
+    assert result.problems == ()
+    assert [str(notice) for notice in result.notices] == [
         "Model!B1: The forecast is a constant: it does not depend on anything"
     ]
 
 
 def test_a_spilled_cell_is_no_constant(read):
     spilled = Formula("A1:A3*2", row=1, column=5, array=Area("Model", 1, 5, 3, 5), dynamic=True)
-    found = read({"Model!E1": (spilled, 1.0), "Model!E2": 2, "Answers!B2": ("=Model!E2", 2.0)})
-    assert found.problems == found.notices == ()
+    result = read({"Model!E1": (spilled, 1.0), "Model!E2": 2, "Answers!B2": ("=Model!E2", 2.0)})
+    assert result.problems == result.notices == ()
 
 
 def test_a_forecast_may_be_an_assumption(read):
-    found = read({"Answers!B2": ("=Inputs!B2", 6761.0)})
-    assert found.problems == found.notices == ()
-    assert found.forecasts[0].cell == found.assumptions[0].cell == Cell("Inputs", 2, 2)
+    result = read({"Answers!B2": ("=Inputs!B2", 6761.0)})
+    assert result.problems == result.notices == ()
+    assert result.forecasts[0].cell == result.assumptions[0].cell == Cell("Inputs", 2, 2)
 
 
 def test_a_value_column_is_the_cell(read):
-    found = read({"Answers!B1": "Value", "Answers!B2": ("=Model!B1", 41.5)})
-    assert found.forecasts[0].cell == Cell("Answers", 2, 2)
+    result = read({"Answers!B1": "Value", "Answers!B2": ("=Model!B1", 41.5)})
+    assert result.forecasts[0].cell == Cell("Answers", 2, 2)
 
 
 def test_a_blank_value_is_a_blank_forecast(only_problem):

@@ -49,10 +49,10 @@ NAMES = (
     ],
 )
 def test_a_formula_that_is_one_reference(read, written, cell):
-    found = read({**LOOSE, AT: (written, 2.0)}, names=NAMES)
-    assert [str(problem) for problem in found.problems] == []
-    assert found.forecasts[0].cell == cell
-    assert found.notices == ()
+    result = read({**LOOSE, AT: (written, 2.0)}, names=NAMES)
+    assert [str(problem) for problem in result.problems] == []
+    assert result.forecasts[0].cell == cell
+    assert result.notices == ()
 
 
 @pytest.mark.parametrize(
@@ -68,10 +68,10 @@ def test_a_formula_that_is_one_reference(read, written, cell):
     ],
 )
 def test_a_text_that_is_one_reference_goes_stale(read, written, cell):
-    found = read({**LOOSE, AT: written}, names=NAMES)
-    assert [str(problem) for problem in found.problems] == []
-    assert found.forecasts[0].cell == cell
-    (notice,) = found.notices
+    result = read({**LOOSE, AT: written}, names=NAMES)
+    assert [str(problem) for problem in result.problems] == []
+    assert result.forecasts[0].cell == cell
+    (notice,) = result.notices
     assert notice.message == (
         f"Cell is the text {written!r}, which goes stale when rows move or names change; the formula ={cell} follows"
     )
@@ -129,14 +129,14 @@ def test_both_value_and_cell(only_problem):
 
 class TestNeitherValueNorCell:
     def test_the_defined_name_equal_to_name(self, read):
-        found = read({AT: None, "Answers!A2": "speed_now"}, names=NAMES)
-        assert found.problems == ()
-        assert found.forecasts[0].cell == POINTED
-        assert found.notices == ()
+        result = read({AT: None, "Answers!A2": "speed_now"}, names=NAMES)
+        assert result.problems == ()
+        assert result.forecasts[0].cell == POINTED
+        assert result.notices == ()
 
     def test_the_name_may_be_the_sheets_own(self, read):
-        found = read({**LOOSE, AT: None, "Answers!A2": "Speed_here"}, names=NAMES)
-        assert found.forecasts[0].cell == Cell("Answers", 5, 10)
+        result = read({**LOOSE, AT: None, "Answers!A2": "Speed_here"}, names=NAMES)
+        assert result.forecasts[0].cell == Cell("Answers", 5, 10)
 
     @pytest.mark.parametrize(
         ("name", "message", "hint"),
@@ -155,9 +155,9 @@ class TestNeitherValueNorCell:
         only_problem("Answers!A2", "Nothing says which cell 'Speed' is", "Fill in Value or Cell", changes)
 
     def test_a_blank_value_column_is_an_input_to_fill_in(self, read):
-        found = read({"Inputs!B2": None})
-        assert found.assumptions[0].cell == Cell("Inputs", 2, 2)
-        assert found.assumptions[0].base is None
+        result = read({"Inputs!B2": None})
+        assert result.assumptions[0].cell == Cell("Inputs", 2, 2)
+        assert result.assumptions[0].base is None
 
 
 class TestMergedCells:
@@ -175,20 +175,20 @@ class TestMergedCells:
 
 def test_a_filled_down_column_of_references(read):
     child = Formula("Model!B2", row=11, column=2)
-    found = read({"Answers!B12": (child, True)})
-    assert found.problems == ()
-    assert [each.cell.row for each in found.filters] == [2, 3]
+    result = read({"Answers!B12": (child, True)})
+    assert result.problems == ()
+    assert [each.cell.row for each in result.filters] == [2, 3]
 
 
 def test_a_formula_typed_into_a_text_cell_is_text(read):
-    found = read({AT: CellContent("=Model!B1")})
-    assert found.forecasts[0].cell == POINTED
-    assert "goes stale" in found.notices[0].message
+    result = read({AT: CellContent("=Model!B1")})
+    assert result.forecasts[0].cell == POINTED
+    assert "goes stale" in result.notices[0].message
 
 
 def test_what_is_so_of_a_whole_column_is_said_once(read):
-    found = read({AT: "Model!B1", "Answers!B11": "Model!B2", "Answers!B12": "Model!B3"})
-    forecast, filters = map(str, found.notices)
+    result = read({AT: "Model!B1", "Answers!B11": "Model!B2", "Answers!B12": "Model!B3"})
+    forecast, filters = map(str, result.notices)
     assert forecast.endswith("the formula =Model!B1 follows")
     assert filters.startswith("Answers!B11: Cell is the text 'Model!B2', which goes stale")
     assert filters.endswith("the formula =Model!B2 follows (so in 1 more cell of this column)")

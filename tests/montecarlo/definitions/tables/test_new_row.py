@@ -16,19 +16,19 @@ def edit(book, name="New", family="Normal", parameters=None):
     return row_edit(book, name, family, NORMAL if parameters is None else parameters, 2.25, "fitted")
 
 
-def named(book, found):
+def named(book, result):
     """Heading -> what is written into its column."""
-    sheet = found.table.area.sheet
-    assert {row for row, _ in found.contents} == {found.row}
-    return {book.content(Cell(sheet, 1, column)).value: value for (_, column), value in found.contents.items()}
+    sheet = result.table.area.sheet
+    assert {row for row, _ in result.contents} == {result.row}
+    return {book.content(Cell(sheet, 1, column)).value: value for (_, column), value in result.contents.items()}
 
 
 @pytest.mark.parametrize(("name", "row"), [("Weight", 2), (" reaction ", 4), ("GRAVITY", 6)])
 def test_the_row_of_that_name_is_replaced(changed_book, name, row):
     book = changed_book()
-    found = edit(book, name)
-    assert (found.row, found.is_new, found.grows, found.where) == (row, False, False, Cell("Inputs", row, 1))
-    assert named(book, found) == {
+    result = edit(book, name)
+    assert (result.row, result.is_new, result.grows, result.where) == (row, False, False, Cell("Inputs", row, 1))
+    assert named(book, result) == {
         "Distribution": "Normal",
         "Mean": 2.0,
         "Std dev": 0.5,
@@ -39,16 +39,16 @@ def test_the_row_of_that_name_is_replaced(changed_book, name, row):
 
 def test_another_has_the_row_below(changed_book):
     book = changed_book()
-    found = edit(book)
-    assert (found.row, found.is_new, found.grows) == (7, True, True)
-    assert named(book, found)["Name"] == "New"
-    assert named(book, found)["Value"] == 2.25
+    result = edit(book)
+    assert (result.row, result.is_new, result.grows) == (7, True, True)
+    assert named(book, result)["Name"] == "New"
+    assert named(book, result)["Value"] == 2.25
 
 
 @pytest.mark.parametrize("bottom", [7, 9])
 def test_an_empty_row_of_the_table_is_filled_first(changed_book, bottom):
-    found = edit(changed_book(tables={"xlmc_assumptions": f"Inputs!A1:P{bottom}"}))
-    assert (found.row, found.is_new, found.grows) == (7, True, False)
+    result = edit(changed_book(tables={"xlmc_assumptions": f"Inputs!A1:P{bottom}"}))
+    assert (result.row, result.is_new, result.grows) == (7, True, False)
 
 
 def test_a_row_between_others_is_filled_first(changed_book, blocks):
@@ -86,8 +86,8 @@ def test_without_a_table_or_a_column_it_says_what_to_do(changed_book):
 
 def test_a_parameter_at_its_usual_value_needs_no_column(changed_book):
     book = changed_book({"Inputs!P1": "Scale", "Inputs!O1": "Shape"})
-    found = named(book, edit(book, "Weight", "Gamma", {"Location": 0.0, "Scale": 1.0, "Shape": 2.0}))
-    assert (found["Scale"], found["Shape"]) == (1.0, 2.0)
-    assert "Location" not in found
+    result = named(book, edit(book, "Weight", "Gamma", {"Location": 0.0, "Scale": 1.0, "Shape": 2.0}))
+    assert (result["Scale"], result["Shape"]) == (1.0, 2.0)
+    assert "Location" not in result
     with pytest.raises(DefinitionError, match="has no column Location"):
         edit(book, "Weight", "Gamma", {"Location": 5.0, "Scale": 1.0, "Shape": 2.0})

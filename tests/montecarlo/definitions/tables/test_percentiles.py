@@ -23,9 +23,9 @@ def one(read, blocks):
     return make
 
 
-def extra(found):
-    assert found.problems == (), [str(problem) for problem in found.problems]
-    return next(each for each in found.assumptions if each.name == "Extra")
+def extra(result):
+    assert result.problems == (), [str(problem) for problem in result.problems]
+    return next(each for each in result.assumptions if each.name == "Extra")
 
 
 @pytest.mark.parametrize(
@@ -63,9 +63,9 @@ def test_percentiles_in_place_of_some(one):
 
 
 def test_a_percentile_between_whole_ones(one):
-    found = one("Normal", P2_5=0.0, P97_5=1.0)
-    assert extra(found).parameters == {"p2.5": 0.0, "p97.5": 1.0}
-    assert not any("note only" in notice.message for notice in found.notices)
+    result = one("Normal", P2_5=0.0, P97_5=1.0)
+    assert extra(result).parameters == {"p2.5": 0.0, "p97.5": 1.0}
+    assert not any("note only" in notice.message for notice in result.notices)
 
 
 def test_a_blank_location_stays_at_its_default_unless_there_is_a_percentile_for_it(one):

@@ -16,7 +16,7 @@ PLAIN = {
 
 
 @pytest.fixture
-def found(make_book):
+def result(make_book):
     """The tables of a workbook with the places of each kind that has some, and what was found wrong."""
 
     def tables(*args, **kwargs):
@@ -28,9 +28,9 @@ def found(make_book):
     return tables
 
 
-def test_a_sheet_with_the_name_of_a_table_is_read_as_one(found):
+def test_a_sheet_with_the_name_of_a_table_is_read_as_one(result):
     """But for the table that says what was converted, which only `xlmc convert` writes."""
-    places, findings = found({**PLAIN, f"{CONVERTED}!A1": "Name", f"{CONVERTED}!A2": "x"})
+    places, findings = result({**PLAIN, f"{CONVERTED}!A1": "Name", f"{CONVERTED}!A2": "x"})
     assert places == {kind: [f"{kind}!B2:C4"] for kind in KINDS if kind != CONVERTED}
     assert [str(notice.where) for notice in findings.notices] == [f"{kind}!B2" for kind in places]
     assert not findings.problems
@@ -47,8 +47,10 @@ def test_a_sheet_with_the_name_of_a_table_is_read_as_one(found):
         ({"A1": "Name", "B1": "Cell", "B2": "x", "A3": "y"}, (), ["xlmc_filters!A1:B3"]),
     ],
 )
-def test_the_extent_of_a_plain_range(found, cells, tables, places):
-    found_places, _ = found({f"xlmc_filters!{at}": each for at, each in cells.items()}, tables, sheets=["xlmc_filters"])
+def test_the_extent_of_a_plain_range(result, cells, tables, places):
+    found_places, _ = result(
+        {f"xlmc_filters!{at}": each for at, each in cells.items()}, tables, sheets=["xlmc_filters"]
+    )
     assert found_places.get("xlmc_filters", []) == places
 
 
@@ -63,8 +65,8 @@ def test_the_extent_of_a_plain_range(found, cells, tables, places):
         ("OFFSET(S!A1,0,0,2,2)", []),
     ],
 )
-def test_a_defined_name_is_read_as_a_table(found, text, places):
-    found_places, _ = found({"S!A1": "Name", "S!B1": "Cell", "S!A2": "x"}, names=[("xlmc_forecasts", text, None)])
+def test_a_defined_name_is_read_as_a_table(result, text, places):
+    found_places, _ = result({"S!A1": "Name", "S!B1": "Cell", "S!A2": "x"}, names=[("xlmc_forecasts", text, None)])
     assert found_places.get("xlmc_forecasts", []) == places
 
 
@@ -75,9 +77,9 @@ def test_headings_of_a_plain_range_are_found_in_their_columns(make_book):
     assert (str(table.where), str(table.heading_cell(3))) == ("xlmc_filters!B2", "xlmc_filters!C2")
 
 
-def test_no_range_is_read_beside_a_table_of_its_kind(found):
+def test_no_range_is_read_beside_a_table_of_its_kind(result):
     cells = {"xlmc_filters!A1": "Name", "xlmc_filters!A2": "x", "S!A1": "Name", "S!A2": "x"}
-    places, findings = found(cells, [("xlmc_filters2", "S!A1:A2")])
+    places, findings = result(cells, [("xlmc_filters2", "S!A1:A2")])
     assert places == {"xlmc_filters": ["S!A1:A2"]}
     assert not findings.notices
 
@@ -95,16 +97,16 @@ def test_no_range_is_read_beside_a_table_of_its_kind(found):
         ("xlmc_case2", "", ""),
     ],
 )
-def test_other_names(found, name, problem, notice):
-    places, findings = found({"S!A1": "Name", "S!A2": "x"}, [(name, "S!A1:A2")])
+def test_other_names(result, name, problem, notice):
+    places, findings = result({"S!A1": "Name", "S!A2": "x"}, [(name, "S!A1:A2")])
     assert places == {}
-    for said, expected in ((findings.problems, problem), (findings.notices, notice)):
-        assert len(said) == bool(expected)
-        assert all(expected in str(each) for each in said)
+    for message, expected in ((findings.problems, problem), (findings.notices, notice)):
+        assert len(message) == bool(expected)
+        assert all(expected in str(each) for each in message)
 
 
-def test_two_columns_of_one_heading(found):
-    _, findings = found({"S!A1": "Std dev", "S!B1": "x", "S!C1": "std DEV", "S!A2": 1}, [("xlmc_filters", "S!A1:C2")])
+def test_two_columns_of_one_heading(result):
+    _, findings = result({"S!A1": "Std dev", "S!B1": "x", "S!C1": "std DEV", "S!A2": 1}, [("xlmc_filters", "S!A1:C2")])
     (problem,) = findings.problems
     assert problem.where == "S!C1"
     assert "two columns 'Std dev' and 'std DEV'" in problem.message

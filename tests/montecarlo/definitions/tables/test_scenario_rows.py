@@ -20,7 +20,7 @@ def cells(blocks, heading, value, name="one", note="why"):
 def changes_of(read, blocks):
     """The changes of a scenario with one column."""
 
-    def found(heading, value):
+    def result(heading, value):
         definitions = read(cells(blocks, heading, value), TABLE, names=[("grip", "Inputs!$B$5", None)])
         assert definitions.problems == ()
         (scenario,) = definitions.scenarios
@@ -28,7 +28,7 @@ def changes_of(read, blocks):
         assert all(str(change.where) == "Scenarios!C2" for change in scenario.changes)
         return scenario
 
-    return found
+    return result
 
 
 INSIDE = {"at_least": 0.0, "at_most": 0.5, "above": None, "below": None}
@@ -65,12 +65,12 @@ def test_what_a_heading_and_a_cell_mean(changes_of, subtests):
     for heading, value, expected, words in GRAMMAR:
         with subtests.test(heading, value=value):
             scenario = changes_of(heading, value)
-            (found,) = scenario.changes
+            (result,) = scenario.changes
             if isinstance(expected, Typed):
-                assert (found.cell, found.value) == (parse_address(expected.cell), expected.value)
+                assert (result.cell, result.value) == (parse_address(expected.cell), expected.value)
             else:
-                assert type(found) is type(expected)
-                assert [getattr(found, name) for name in expected.__slots__ if name != "where"] == [
+                assert type(result) is type(expected)
+                assert [getattr(result, name) for name in expected.__slots__ if name != "where"] == [
                     getattr(expected, name) for name in expected.__slots__ if name != "where"
                 ]
             assert changes_text(scenario, Definitions()) == words

@@ -96,18 +96,18 @@ def test_bad_seeds(only_problem, seed):
     ],
 )
 def test_settings(read, setting, value, expected):
-    found = read({NAME: setting, VALUE: value})
-    assert found.problems == found.notices == ()
-    assert found.settings == expected
-    assert type(found.settings.trials) is type(found.settings.seed) is int
+    result = read({NAME: setting, VALUE: value})
+    assert result.problems == result.notices == ()
+    assert result.settings == expected
+    assert type(result.settings.trials) is type(result.settings.seed) is int
 
 
 @pytest.mark.parametrize("written", ["200000", "200,000", "200 000", "2e5", "200k", "0.2M", " 200000 "])
 def test_whole_numbers_written_as_text_are_read_as_on_the_command_line(read, written):
     for setting in ("Trials", "Until accepted"):
-        found = read({NAME: setting, VALUE: written})
-        assert found.problems == found.notices == ()
-        read_as = found.settings.trials if setting == "Trials" else found.settings.stopping.accepted
+        result = read({NAME: setting, VALUE: written})
+        assert result.problems == result.notices == ()
+        read_as = result.settings.trials if setting == "Trials" else result.settings.stopping.accepted
         assert read_as == 200_000
         assert type(read_as) is int
     assert read({"Answers!B32": written}).settings.seed == 200_000
@@ -118,9 +118,9 @@ def test_a_seed_of_zero(read):
 
 
 def test_a_range_below_1_is_a_share(read):
-    found = read({NAME: "Range %", VALUE: 0.9})
-    assert found.forecasts[0].central == 0.9
-    assert [str(notice) for notice in found.notices] == ["Answers!B31: Range % 0.9 is read as 90 %"]
+    result = read({NAME: "Range %", VALUE: 0.9})
+    assert result.forecasts[0].central == 0.9
+    assert [str(notice) for notice in result.notices] == ["Answers!B31: Range % 0.9 is read as 90 %"]
 
 
 def test_two_tables(only_problem, blocks):
@@ -148,9 +148,9 @@ def test_two_tables(only_problem, blocks):
 )
 def test_when_the_run_ends(read, blocks, rows, trials, expected):
     table = blocks("End!A1", [["Setting", "Value"], *rows])
-    found = read(table, tables={"xlmc_settings": f"End!A1:B{len(rows) + 1}"})
-    assert found.problems == found.notices == ()
-    assert (found.settings.trials, found.settings.stopping) == (trials, expected)
+    result = read(table, tables={"xlmc_settings": f"End!A1:B{len(rows) + 1}"})
+    assert result.problems == result.notices == ()
+    assert (result.settings.trials, result.settings.stopping) == (trials, expected)
 
 
 @pytest.mark.parametrize(
@@ -161,17 +161,17 @@ def test_when_the_run_ends(read, blocks, rows, trials, expected):
     ],
 )
 def test_settings_that_exclude_each_other(read, blocks, rows, message):
-    found = read(blocks("End!A1", [["Setting", "Value"], *rows]), tables={"xlmc_settings": "End!A1:B3"})
-    assert [(str(problem.where), problem.message) for problem in found.problems] == [("End!A1", message)]
+    result = read(blocks("End!A1", [["Setting", "Value"], *rows]), tables={"xlmc_settings": "End!A1:B3"})
+    assert [(str(problem.where), problem.message) for problem in result.problems] == [("End!A1", message)]
 
 
 def test_a_mistake_in_one_row_is_told_once(read, blocks):
     rows = [["Setting", "Value"], ["Precision", -1], ["Precision of", "mean"]]
-    found = read(blocks("End!A1", rows), tables={"xlmc_settings": "End!A1:B3"})
-    assert [problem.message for problem in found.problems] == ["Precision must be above 0, not -1"]
+    result = read(blocks("End!A1", rows), tables={"xlmc_settings": "End!A1:B3"})
+    assert [problem.message for problem in result.problems] == ["Precision must be above 0, not -1"]
 
 
 def test_a_precision_below_1_percent_is_told(read):
-    found = read({NAME: "Precision %", VALUE: 0.5})
-    assert [str(notice) for notice in found.notices] == ["Answers!B31: Precision % 0.5 is read as 0.5 %"]
-    assert found.settings.stopping.goal.tolerance == 0.005
+    result = read({NAME: "Precision %", VALUE: 0.5})
+    assert [str(notice) for notice in result.notices] == ["Answers!B31: Precision % 0.5 is read as 0.5 %"]
+    assert result.settings.stopping.goal.tolerance == 0.005

@@ -12,8 +12,8 @@ HEADINGS = ["Name", " CELL ", "At_Least", "Comment"]
 
 def names_of(book, tables, known=("Name", "Cell", "At least")):
     findings = Findings()
-    found = definition_tables(book, findings)[tables]
-    return [row.content("name").value for row in rows_of(book, found, ("Name",), known, findings)], findings
+    result = definition_tables(book, findings)[tables]
+    return [row.content("name").value for row in rows_of(book, result, ("Name",), known, findings)], findings
 
 
 @pytest.mark.parametrize(
@@ -168,9 +168,9 @@ def test_a_misspelt_heading_that_numbers_depend_on_is_refused(read, changes, whe
     ids=["nothing stands in it", "it is only shown", "the table has the column that it is like"],
 )
 def test_a_slip_in_another_heading_is_pointed_out(read, changes, expected):
-    found = read(changes)
-    assert found.problems == ()
-    assert [str(notice) for notice in found.notices if "note only" in notice.message] == [expected]
+    result = read(changes)
+    assert result.problems == ()
+    assert [str(notice) for notice in result.notices if "note only" in notice.message] == [expected]
 
 
 @pytest.mark.parametrize(

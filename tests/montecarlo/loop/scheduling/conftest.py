@@ -29,11 +29,11 @@ def small_blocks(monkeypatch):
 def bits():
     """All that a run found, to compare to the last bit."""
 
-    def found(run):
+    def result(run):
         parts = (run.inputs, run.prior, run.forecasts)
         arrays = [run.trial_index.tobytes(), *(values.tobytes() for part in parts for values in part.values())]
         tally = run.tally
         counts = [tally.rejected.tolist(), tally.only.tolist(), tally.together.tolist(), tally.errors, tally.by_error]
         return arrays, counts, run.faults, run.invalid, run.error_trials, run.trials
 
-    return found
+    return result

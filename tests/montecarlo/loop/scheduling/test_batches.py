@@ -71,10 +71,10 @@ def numbered():
 )
 def test_what_goes_wrong_in_a_block_is_told_in_its_turn(shared, failing):
     """Though the other has met it long before: a run that ends earlier does not meet it at all."""
-    found = []
+    result = []
     with pytest.raises((ValueError, RuntimeError, TwoWordsError), match="no such"):
-        found.extend(shared(failing, numbered()))
-    assert found == list(range(300))
+        result.extend(shared(failing, numbered()))
+    assert result == list(range(300))
 
 
 def test_runs_in_several_threads_at_once_get_their_own_blocks():
@@ -91,10 +91,10 @@ def test_runs_in_several_threads_at_once_get_their_own_blocks():
         return list(by_processes(Adding(number), Slow(Adding(number)), 1, 1000, numbered()))
 
     with ThreadPoolExecutor(2) as pool:
-        found = list(pool.map(run, [0, 1000, 2000, 3000]))
-    for turn, blocks in enumerate(found):
+        result = list(pool.map(run, [0, 1000, 2000, 3000]))
+    for turn, blocks in enumerate(result):
         assert [value for value, _ in blocks] == list(range(1000 * turn, 1000 * turn + 1000))
-    assert len({where for blocks in found for _, where in blocks}) > 1
+    assert len({where for blocks in result for _, where in blocks}) > 1
 
 
 def test_a_thread_has_its_part():

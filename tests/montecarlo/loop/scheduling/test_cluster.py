@@ -32,22 +32,22 @@ def in_one_process(workers, threads=1, **more):
 @pytest.fixture(scope="module")
 def cluster():
     """The address of a scheduler with a worker here and one in a process of its own, and that process."""
-    with in_one_process(1, protocol="tcp") as found:
-        command = [sys.executable, "-m", "distributed.cli.dask_worker", found.scheduler_address, "--no-nanny"]
+    with in_one_process(1, protocol="tcp") as result:
+        command = [sys.executable, "-m", "distributed.cli.dask_worker", result.scheduler_address, "--no-nanny"]
         options = ["--nthreads", "1", "--no-dashboard"]
         with subprocess.Popen([*command, *options], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL) as other:
             try:
-                with Client(found, set_as_default=False) as client:
+                with Client(result, set_as_default=False) as client:
                     client.wait_for_workers(2, timeout=120)
-                yield found.scheduler_address, other
+                yield result.scheduler_address, other
             finally:
                 other.kill()
 
 
 @pytest.mark.parametrize(("workers", "threads"), [(3, 1), (1, 3)])
 def test_workers_change_no_bit(model, bits, workers, threads):
-    with in_one_process(workers, threads) as found:
-        run = simulated(model, 3050, scheduler=found.scheduler_address)
+    with in_one_process(workers, threads) as result:
+        run = simulated(model, 3050, scheduler=result.scheduler_address)
     assert bits(run) == bits(simulated(model, 3050))
 
 
@@ -112,11 +112,11 @@ def test_a_worker_that_is_killed_costs_only_time(model, bits, cluster):
 
 def test_few_tasks_are_under_way_at_once(model, monkeypatch):
     """They are taken as results come in: of an endless run only so many are ever made."""
-    with in_one_process(2) as found:
+    with in_one_process(2) as result:
         seen, made = [], []
         task = module.Task
         monkeypatch.setattr(module, "Task", lambda *given: made.append(given) or task(*given))
-        simulated(model, 10_000, scheduler=found.scheduler_address, progress=lambda *_: seen.append(len(made)))
+        simulated(model, 10_000, scheduler=result.scheduler_address, progress=lambda *_: seen.append(len(made)))
     ahead = [there - done for done, there in enumerate(seen, 1)]
     assert max(ahead) <= 8 * scheduling.MOST_BLOCKS
     assert len(made) == 100
@@ -127,9 +127,9 @@ def test_the_workbook_is_understood_once_a_worker(model, monkeypatch):
     runners = scheduling._Runners
     monkeypatch.setattr(scheduling, "_Runners", lambda packed: made.append(packed) or runners(packed))
     scheduling._runners.cache_clear()
-    with in_one_process(1) as found:
-        simulated(model, 3000, seed=4, scheduler=found.scheduler_address)
-        simulated(model, 2000, seed=4, scheduler=found.scheduler_address)
+    with in_one_process(1) as result:
+        simulated(model, 3000, seed=4, scheduler=result.scheduler_address)
+        simulated(model, 2000, seed=4, scheduler=result.scheduler_address)
     assert len(made) == 1
 
 
@@ -137,8 +137,8 @@ def test_the_workbook_is_understood_once_a_worker(model, monkeypatch):
 def test_workers_with_other_software_are_refused(model, monkeypatch, name):
     own = scheduling.software()
     monkeypatch.setattr(scheduling, "software", lambda: own | {name: "0.0.1"})
-    with in_one_process(1) as found, pytest.raises(SimulationError, match=f"worker .*{name} is .* and 0.0.1 here"):
-        simulated(model, 1000, scheduler=found.scheduler_address)
+    with in_one_process(1) as result, pytest.raises(SimulationError, match=f"worker .*{name} is .* and 0.0.1 here"):
+        simulated(model, 1000, scheduler=result.scheduler_address)
 
 
 def test_a_worker_that_joins_later_is_asked_too(model, monkeypatch):
@@ -150,8 +150,8 @@ def test_a_worker_that_joins_later_is_asked_too(model, monkeypatch):
         patch.setattr("xlmc.montecarlo.loop.scheduling.run_spec.software", lambda: own | {"numpy": "0.0.1"})
         other = packed(scheduling.RunSpec.of(model, "numpy", 999, 100))
     monkeypatch.setattr(scheduling.RunSpec, "pack", lambda _: other)
-    with in_one_process(1) as found, pytest.raises(SimulationError, match=r"numpy is .* there and 0\.0\.1 here"):
-        simulated(model, 1000, scheduler=found.scheduler_address)
+    with in_one_process(1) as result, pytest.raises(SimulationError, match=r"numpy is .* there and 0\.0\.1 here"):
+        simulated(model, 1000, scheduler=result.scheduler_address)
 
 
 def test_no_scheduler(model, monkeypatch):
@@ -166,9 +166,9 @@ def test_no_scheduler(model, monkeypatch):
 
 def test_no_workers(model, monkeypatch):
     monkeypatch.setattr(scheduling, "PATIENCE", 0.1)
-    with in_one_process(0) as found, pytest.raises(SimulationError, match="The scheduler has no workers") as caught:
-        simulated(model, 1000, scheduler=found.scheduler_address)
-    assert f"dask worker {found.scheduler_address}" in caught.value.hint
+    with in_one_process(0) as result, pytest.raises(SimulationError, match="The scheduler has no workers") as caught:
+        simulated(model, 1000, scheduler=result.scheduler_address)
+    assert f"dask worker {result.scheduler_address}" in caught.value.hint
 
 
 def test_without_dask(model, monkeypatch):

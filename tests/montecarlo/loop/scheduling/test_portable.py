@@ -79,8 +79,8 @@ def test_little_is_imported(case_study, tmp_path):
     file.write_bytes(pickle.dumps(model_runner(model, model.program("numpy"), "numpy", 1, 32_768)))
     unpack = f"import pickle, sys; pickle.load(open({str(file)!r}, 'rb')); print(' '.join(sys.modules))"
     where = {**os.environ, "PYTHONPATH": os.pathsep.join(sys.path)}
-    found = subprocess.run([sys.executable, "-c", unpack], capture_output=True, text=True, check=True, env=where)
-    modules = found.stdout.split()
+    result = subprocess.run([sys.executable, "-c", unpack], capture_output=True, text=True, check=True, env=where)
+    modules = result.stdout.split()
     assert "xlmc.montecarlo.loop.blocks" in modules
     rooms = (
         "xlmc.excel.formula",

@@ -78,14 +78,14 @@ def answers_of(one, portable, batches):
     """What a process answers that is given these batches of tasks."""
     answers = Answers()
     one.begin(pickle.dumps(portable), answers)
-    found = []
+    result = []
     for number in range(len(batches) + 1):
         of, answer = answers.get()
         assert of is one
-        found += one.answered(answer)[1]
+        result += one.answered(answer)[1]
         if number < len(batches):
             one.ask(number, batches[number])
-    return found
+    return result
 
 
 @pytest.mark.parametrize("engine", ["numpy", "jit"])
@@ -94,8 +94,8 @@ def test_blocks_of_another_process_are_the_same(model, process, engine):
     tasks = [Task(100 * block, 100, block < 3, block < 6) for block in range(10)]
     runner = model_runner(model, model.program(engine), engine, 1, 100)
     portable = runner if engine == "numpy" else RunSpec.of(model, engine, 1, 100)
-    found = answers_of(process, portable, [tasks[:3], tasks[3:4], tasks[4:]])
-    assert [pickle.dumps(block) for block in found] == [pickle.dumps(runner.run(task)) for task in tasks]
+    result = answers_of(process, portable, [tasks[:3], tasks[3:4], tasks[4:]])
+    assert [pickle.dumps(block) for block in result] == [pickle.dumps(runner.run(task)) for task in tasks]
 
 
 def test_processes_wait_for_the_next_run(model, bits, children):

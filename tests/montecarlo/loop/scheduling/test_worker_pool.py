@@ -15,19 +15,19 @@ from xlmc.montecarlo.loop.scheduling.worker_pool import WorkerPool
 @pytest.fixture
 def chosen(monkeypatch):
     """Run a pool without its workers: what was chosen, for how many besides this thread, and the number of blocks."""
-    found = []
+    result = []
     runner = SimpleNamespace(borrow=lambda task, memory: ("borrowed", task, memory))
 
     def by_threads(runners, blocks, tasks):
-        found.append(("threads", len(runners) - 1, blocks))
+        result.append(("threads", len(runners) - 1, blocks))
         return tasks
 
     def by_processes(_, own, others, blocks, tasks):
-        found.append(("processes", others, blocks))
+        result.append(("processes", others, blocks))
         return tasks
 
     def by_cluster(_, address, workers, blocks, tasks):
-        found.append((address, workers, blocks))
+        result.append((address, workers, blocks))
         return tasks
 
     monkeypatch.setattr(worker_pool, "model_runner", lambda *_: runner)
@@ -37,13 +37,13 @@ def chosen(monkeypatch):
     monkeypatch.setattr(cluster, "by_cluster", by_cluster)
 
     def run(pool, trials, engine="numpy", python=()):
-        found.clear()
+        result.clear()
         model = SimpleNamespace(definitions=SimpleNamespace(python=python))
         settings, plan = SimpleNamespace(engine=engine, seed=1), SimpleNamespace(trials=trials)
         blocks = list(pool.blocks(model, None, settings, plan, 100, iter("ab"), "memory"))
         here = [("borrowed", task, "memory") for task in "ab"]
-        assert blocks == (list("ab") if found else here)
-        return found[0] if found else "this thread"
+        assert blocks == (list("ab") if result else here)
+        return result[0] if result else "this thread"
 
     return run
 

@@ -78,10 +78,10 @@ def test_it_ends_when_the_standard_would_but_not_before_enough_sequences(block, 
     many, (values,) = run_rule(UntilStable(StableDigits(2), [(0, "x", 0.5)]), normal_blocks(block, 1, scale=4.0))
     whole = values.reshape(-1, 500)
     ends = np.quantile(whole, [0.25, 0.75], axis=1)
-    found = np.array([whole.mean(axis=1), whole.std(axis=1, ddof=1), *ends])
+    result = np.array([whole.mean(axis=1), whole.std(axis=1, ddof=1), *ends])
 
     def worst(count):
-        return 2.0 * (found[:, :count].std(axis=1, ddof=1) / math.sqrt(count)).max()
+        return 2.0 * (result[:, :count].std(axis=1, ddof=1) / math.sqrt(count)).max()
 
     assert worst(2 * many) <= 0.05 < worst(2 * many - 2)
     assert many > few

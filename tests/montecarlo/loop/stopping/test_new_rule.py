@@ -149,9 +149,9 @@ def test_what_cannot_be_meant(model, asked, message):
 
 def book_with(small_book, path, setting, value):
     """The small book, with another row in place of its number of trials."""
-    found = openpyxl.load_workbook(small_book)
-    found["Wanted"]["A9"], found["Wanted"]["B9"] = setting, value
-    found.save(path)
+    result = openpyxl.load_workbook(small_book)
+    result["Wanted"]["A9"], result["Wanted"]["B9"] = setting, value
+    result.save(path)
     return path
 
 
@@ -165,8 +165,8 @@ def test_the_command_line_and_the_settings_ask_for_it(commands, small_book, tmp_
         done = CliRunner().invoke(commands, arguments)
         assert "Ended when 100 trials were rejected." in done.output, (done.output, done.exception)
     for name in ("a-results.xlsx", "b-results.xlsx"):
-        with closing(openpyxl.load_workbook(tmp_path / name, read_only=True)) as found:
-            texts = [value for cells in found["Results"].iter_rows(values_only=True) for value in cells]
+        with closing(openpyxl.load_workbook(tmp_path / name, read_only=True)) as result:
+            texts = [value for cells in result["Results"].iter_rows(values_only=True) for value in cells]
         assert "The run ended when 100 trials were rejected." in texts
     done = CliRunner().invoke(commands, ["replay", str(tmp_path / "b-results.xlsx")])
     assert done.exit_code == 0, done.output

@@ -43,10 +43,10 @@ def stream(block, draw, seed, size=100, blocks=2000):
 def test_it_ends_at_the_first_checkpoint_at_which_the_interval_is_narrow_enough(
     block, run_rule, tolerance, numbers, statistic
 ):
-    found, (values,) = run_rule(rule(tolerance, numbers), stream(block, "exponential", 5))
+    result, (values,) = run_rule(rule(tolerance, numbers), stream(block, "exponential", 5))
     checkpoints = Checkpoints()
-    looks = [count for count in range(1, found + 1) if checkpoints.due() and 100 * count >= LEAST_NUMBERS]
-    assert looks[-1] == found
+    looks = [count for count in range(1, result + 1) if checkpoints.due() and 100 * count >= LEAST_NUMBERS]
+    assert looks[-1] == result
     widths = []
     for count in looks:
         estimate = statistic(values[: 100 * count])
@@ -65,16 +65,16 @@ def test_checkpoints_lie_a_quarter_apart():
 
 def test_as_many_trials_as_the_normal_distribution_asks_for(block, run_rule):
     """(1.96/0.02)² = 9604 numbers, found at the first checkpoint after them, or the one before or after it."""
-    found, _ = run_rule(rule(0.02), stream(block, "standard_normal", 8))
-    assert 9604 * 0.9 <= 100 * found <= 9604 * 1.25 * 1.1
+    result, _ = run_rule(rule(0.02), stream(block, "standard_normal", 8))
+    assert 9604 * 0.9 <= 100 * result <= 9604 * 1.25 * 1.1
 
 
 def test_never_before_there_are_enough_numbers(block, run_rule):
-    found, (values,) = run_rule(rule(1e6), stream(block, "standard_normal", 1))
-    assert values.size == 100 * found >= LEAST_NUMBERS
+    result, (values,) = run_rule(rule(1e6), stream(block, "standard_normal", 1))
+    assert values.size == 100 * result >= LEAST_NUMBERS
     lost = (block(np.where(np.arange(100) < 90, np.nan, 1.0)) for _ in range(2000))
-    found, (values,) = run_rule(rule(1e6), lost)
-    assert 10 * found >= LEAST_NUMBERS
+    result, (values,) = run_rule(rule(1e6), lost)
+    assert 10 * result >= LEAST_NUMBERS
 
 
 def test_a_forecast_without_numbers_never_ends_it(block, run_rule):
@@ -102,8 +102,8 @@ def test_a_mean_that_does_not_exist_is_not_waited_for_by_a_percentile(block, run
 
 def test_what_does_not_vary_is_known(block, run_rule):
     for value in (0.0, 3.0):
-        found = run_rule(rule("1%", "mean,sd,range"), (block(np.full(100, value)) for _ in range(199)))[0]
-        assert LEAST_EQUAL <= 100 * found < 1.3 * LEAST_EQUAL
+        result = run_rule(rule("1%", "mean,sd,range"), (block(np.full(100, value)) for _ in range(199)))[0]
+        assert LEAST_EQUAL <= 100 * result < 1.3 * LEAST_EQUAL
 
 
 def test_what_is_rare_is_waited_for(block, run_rule):
@@ -172,9 +172,9 @@ def test_intervals_of_runs_that_ended_by_themselves_hold_the_truth(block, run_ru
     """
     held = lengths = 0
     for seed in range(REPLICATES):
-        found, (values,) = run_rule(rule(tolerance, numbers), stream(block, draw, (17, seed), 300))
+        result, (values,) = run_rule(rule(tolerance, numbers), stream(block, draw, (17, seed), 300))
         low, high = STATISTICS[numbers](values).interval
         held += low <= true <= high
-        lengths += found
+        lengths += result
     assert 5 < lengths / REPLICATES < 30
     assert bdtr(held, REPLICATES, 0.94) > 0.01 / len(COVERAGE), held / REPLICATES

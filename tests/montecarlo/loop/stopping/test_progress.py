@@ -27,10 +27,10 @@ def test_blocks_give_what_all_of_them_give_at_once(parts):
     running = merged(parts)
     assert running.n == values.size
     scale = max(1.0, float(np.abs(values).max(initial=0.0)))
-    found, expected = running.mean(), statistics.mean(values)
-    assert found.value == pytest.approx(expected.value, abs=1e-12 * scale, nan_ok=True)
-    found, expected = running.standard_deviation(), statistics.standard_deviation(values)
-    assert found.value == pytest.approx(expected.value, abs=1e-7 * scale, nan_ok=True)
+    result, expected = running.mean(), statistics.mean(values)
+    assert result.value == pytest.approx(expected.value, abs=1e-12 * scale, nan_ok=True)
+    result, expected = running.standard_deviation(), statistics.standard_deviation(values)
+    assert result.value == pytest.approx(expected.value, abs=1e-7 * scale, nan_ok=True)
 
 
 @pytest.mark.parametrize("draw", ["normal", "exponential", "uniform"])
@@ -39,12 +39,12 @@ def test_errors_and_intervals_are_those_of_the_statistics(draw, confidence):
     values = getattr(np.random.default_rng(3), draw)(size=5000) + 7.0
     running = merged(np.array_split(values, [10, 11, 900, 4000]))
     for name in ("mean", "standard_deviation"):
-        found = getattr(running, name)(confidence)
+        result = getattr(running, name)(confidence)
         expected = getattr(statistics, name)(values, confidence=confidence)
-        assert found.value == pytest.approx(expected.value, rel=1e-12)
-        assert found.error == pytest.approx(expected.error, rel=1e-3)  # terms of order 1/n are left out
-        assert found.interval == pytest.approx(expected.interval, rel=1e-3)
-        assert found.n == expected.n
+        assert result.value == pytest.approx(expected.value, rel=1e-12)
+        assert result.error == pytest.approx(expected.error, rel=1e-3)  # terms of order 1/n are left out
+        assert result.interval == pytest.approx(expected.interval, rel=1e-3)
+        assert result.n == expected.n
 
 
 def test_digits_survive_far_from_zero():

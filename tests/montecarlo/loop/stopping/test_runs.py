@@ -91,8 +91,8 @@ def test_a_run_of_as_many_trials_has_the_same_trials(model, end):
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
 def test_a_cluster_ends_at_the_same_trial(model):
     asked = {"n_workers": 2, "threads_per_worker": 1, "processes": False, "dashboard_address": ":0"}
-    with LocalCluster(**asked) as found:
-        run = simulated(model, until_accepted=700, scheduler=found.scheduler_address)
+    with LocalCluster(**asked) as result:
+        run = simulated(model, until_accepted=700, scheduler=result.scheduler_address)
     assert bits(run) == bits(simulated(model, until_accepted=700))
 
 

@@ -66,8 +66,8 @@ def test_a_limit_ends_it_before_its_goal(block_of_trials, more, by, limit):
 
 
 def test_the_goal_comes_first_where_several_end_it_at_once(block_of_trials):
-    found = watch(block_of_trials, rule=UntilAccepted(AcceptedTrials(10)), trials=50, seconds=5.0, interrupted_after=4)
-    assert (found[0], found[1].by) == (5, "accepted")
+    result = watch(block_of_trials, rule=UntilAccepted(AcceptedTrials(10)), trials=50, seconds=5.0, interrupted_after=4)
+    assert (result[0], result[1].by) == (5, "accepted")
     assert watch(block_of_trials, trials=50, seconds=5.0, interrupted_after=4)[1].by == "trials"
 
 
@@ -209,13 +209,13 @@ def test_where_it_is_ignored_it_stays_so():
 
 
 def test_other_threads_hear_no_signals():
-    found = []
+    result = []
 
     def enter():
         with Interruption(wanted=True):
-            found.append(signal.getsignal(signal.SIGINT))
+            result.append(signal.getsignal(signal.SIGINT))
 
     thread = threading.Thread(target=enter)
     thread.start()
     thread.join()
-    assert found == [signal.default_int_handler]
+    assert result == [signal.default_int_handler]

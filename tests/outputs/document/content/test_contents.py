@@ -29,20 +29,20 @@ def test_the_answer_can_be_read_alone(run):
     table, above = (each for each in blocks if isinstance(each, Table))
     for name, result in run.results.items():
         row = row_of(table, name)
-        found = [each.found for each in row if isinstance(each, Measured)]
-        assert found[:4] == [result.mean, result.standard_deviation, *result.central()]
+        results = [each.estimate for each in row if isinstance(each, Measured)]
+        assert results[:4] == [result.mean, result.standard_deviation, *result.central()]
         if result.definition.threshold is not None:
             *_, limit, share = row_of(above, name)
             assert limit.value == result.definition.threshold
-            assert share.found == result.statistics.probability_above
+            assert share.estimate == result.statistics.probability_above
         assert f"{name}: " in "".join(text for each in blocks if isinstance(each, Bullets) for text in each.texts)
 
 
 def test_a_report_of_one_forecast_tells_of_no_other(run):
-    told, other = [*run.results][:2]
-    blocks = [*answer_blocks(run, [told])]
+    messages, other = [*run.results][:2]
+    blocks = [*answer_blocks(run, [messages])]
     tables = [each for each in blocks if isinstance(each, Table)]
-    assert [[row[0] for row in table.rows] for table in tables] == [[told]] * len(tables)
+    assert [[row[0] for row in table.rows] for table in tables] == [[messages]] * len(tables)
     assert not any(text.startswith(other) for each in blocks if isinstance(each, Bullets) for text in each.texts)
 
 
@@ -56,9 +56,9 @@ def test_a_sheet_has_the_same_numbers_and_how_many_trials(run):
 
 def test_a_yes_no_answer_above_its_threshold_is_told_as_a_yes(make):
     cells = {"A1": 1.0, "B1": "=A1>0.5", "B2": "=A1"}
-    told = [make.forecast("yes", "B1", threshold=0.5), make.forecast("number", "B2", threshold=0.5)]
-    found = make.simulate(cells, [make.uniform("a", "A1", 0, 1)], told)
-    above = tables(answer_blocks(found, found.results))["Values above a threshold."]
+    messages = [make.forecast("yes", "B1", threshold=0.5), make.forecast("number", "B2", threshold=0.5)]
+    result = make.simulate(cells, [make.uniform("a", "A1", 0, 1)], messages)
+    above = tables(answer_blocks(result, result.results))["Values above a threshold."]
     assert [row[0] for row in above.rows] == ["number"]
 
 
@@ -68,11 +68,14 @@ def is_table(block):
 
 def test_filters_say_what_they_ask_and_rejected(run):
     full, brief = (tables(filter_blocks(run, full=each)) for each in (True, False))
-    rejected, told = full["Trials rejected by the filters."], brief["The filters and how many trials each rejected."]
+    rejected, messages = (
+        full["Trials rejected by the filters."],
+        brief["The filters and how many trials each rejected."],
+    )
     for index, each in enumerate(run.model.filters):
-        row, short = (row_of(table, f"{index + 1}. {each.name}") for table in (rejected, told))
+        row, short = (row_of(table, f"{index + 1}. {each.name}") for table in (rejected, messages))
         assert row[2].value == short[3].value == run.tally.rejected[index]
-        assert row[3].found == short[4].found == proportion(int(run.tally.rejected[index]), run.trials)
+        assert row[3].estimate == short[4].estimate == proportion(int(run.tally.rejected[index]), run.trials)
         assert [each.value for each in row[6:] if each] == [*run.tally.together[index]][:index] + [
             *run.tally.together[index]
         ][index + 1 :]
@@ -84,20 +87,20 @@ def test_trials_are_counted(run):
     (table,) = tables(count_blocks(run)).values()
     counts = {row[0]: row[1].value for row in table.rows}
     assert counts == {"Run": run.trials, "Accepted": run.accepted, "Lost to errors in cells": run.error_trials}
-    assert row_of(table, "Accepted")[2].found == run.acceptance
+    assert row_of(table, "Accepted")[2].estimate == run.acceptance
 
 
 def test_weighted_trials_have_evidence_and_effective_trials(weighted):
     (table,) = tables(count_blocks(weighted)).values()
     assert row_of(table, "Effective")[1].value == round(weighted.weighting.effective)
-    found = tables(evidence_blocks(weighted, weighted.results, full=True))
+    result = tables(evidence_blocks(weighted, weighted.results, full=True))
     brief = tables(evidence_blocks(weighted, weighted.results, full=False))
     moved, means = (
-        found["What each item moves."],
+        result["What each item moves."],
         brief["What each item of evidence moves: the means of the forecasts."],
     )
     assert {cell_text(row[3]) for row in moved.rows} == {cell_text(row[2]) for row in means.rows}
-    assert "The rows of xlmc_evidence." in found
+    assert "The rows of xlmc_evidence." in result
 
 
 @pytest.mark.parametrize("make", [check_blocks, lambda run: evidence_blocks(run, run.results, full=True)])

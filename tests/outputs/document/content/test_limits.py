@@ -23,7 +23,7 @@ FORECASTS = {
 
 
 @pytest.fixture(scope="module")
-def found(tmp_path_factory):
+def result(tmp_path_factory):
     """What moves with the limit of a filter, whose cell shows a percentage."""
     book = openpyxl.Workbook()
     model, tables = book.active, book.create_sheet("Tables")
@@ -42,8 +42,8 @@ def found(tmp_path_factory):
     return sensitivities(xlmc.load(path).simulate(2_000, seed=1)._run)
 
 
-def test_limits_are_written_as_their_cell(found):
-    blocks = [*limit_blocks(found)]
+def test_limits_are_written_as_their_cell(result):
+    blocks = [*limit_blocks(result)]
     assert next(each.text for each in blocks if isinstance(each, Heading)) == "Limit: at least 15 % (Model!B1)"
     shares, _, answers = (each for each in blocks if isinstance(each, Table))
     assert "15 %" in [cell_text(row[1]) for row in shares.rows]
@@ -52,28 +52,28 @@ def test_limits_are_written_as_their_cell(found):
     assert {each.form_across.kind for each in charts} == {Kind.PERCENT}
 
 
-def test_changes_of_a_probability_are_drawn_in_percentage_points(found):
-    charts = [each.drawing.data for each in limit_blocks(found) if isinstance(each, Figure)]
+def test_changes_of_a_probability_are_drawn_in_percentage_points(result):
+    charts = [each.drawing.data for each in limit_blocks(result) if isinstance(each, Figure)]
     by_name = {line.name: chart for chart in charts for line in chart.lines}
     drawn = by_name["Large"]
     assert (drawn.upwards, drawn.form_upwards.tick(-0.005, 4)) == ("Change of the mean, %", "-0.50 %")
-    [limit] = found.filter_limits
+    [limit] = result.filter_limits
     changes = [point.answers[0].change.value for point in limit.points]
     assert [point[1] for point in drawn.lines[0].points] == pytest.approx(changes)
-    assert tornado_chart(found["Large"], 5).data.form.tick(-1.0, 0) == "-100 %"
+    assert tornado_chart(result["Large"], 5).data.form.tick(-1.0, 0) == "-100 %"
 
 
-def test_a_time_of_day_stands_on_no_axis_of_days(found):
-    charts = [each.drawing.data for each in limit_blocks(found) if isinstance(each, Figure)]
+def test_a_time_of_day_stands_on_no_axis_of_days(result):
+    charts = [each.drawing.data for each in limit_blocks(result) if isinstance(each, Figure)]
     assert sorted([line.name for line in chart.lines] for chart in charts) == [["Clock"], ["Cost"], ["Day"], ["Large"]]
     assert next(each for each in charts if each.lines[0].name == "Cost").form_upwards != PLAIN
 
 
-def test_a_probability_has_no_range(found):
-    table = [each for each in limit_blocks(found) if isinstance(each, Table)][-1]
+def test_a_probability_has_no_range(result):
+    table = [each for each in limit_blocks(result) if isinstance(each, Table)][-1]
     rows = [row for row in table.rows if row[0] == "Large"]
     assert {(cell_text(row[4]), cell_text(row[5])) for row in rows} == {("–", "–")}
-    [limit] = found.filter_limits
-    forecasts = {each.forecast: each for each in found.forecasts}
+    [limit] = result.filter_limits
+    forecasts = {each.forecast: each for each in result.forecasts}
     line = limit_chart_of_ranges(limit, forecasts, [*range(len(limit.slopes))]).data.lines[0]
     assert [point[1] for point in line.points] == [point.answers[0].change.value for point in limit.points]

@@ -184,7 +184,7 @@ def _forecast_row(result: ForecastResult) -> tuple[Value, ...]:
 
 def filter_section(simulation: RunResult) -> Section:
     """Every filter with its limits, its reason, and the trials it rejected; then those that are not used."""
-    rows = [_filter_row(simulation, *found) for found in enumerate(simulation.model.filters)]
+    rows = [_filter_row(simulation, *result) for result in enumerate(simulation.model.filters)]
     idle = simulation.model.definitions.unused
     rows += [(*_filter_cells(each), None, None, None, notes_text(each.notes)) for each in idle]
     return Section("filters", "Filters", table=RecordTable(_FILTER, tuple(rows)))
@@ -224,10 +224,10 @@ def forecast_filter_section(simulation: RunResult) -> Section:
 
 def evidence_section(simulation: RunResult) -> Section:
     """Every row of `xlmc_evidence`, and what was found of those that are used."""
-    found = {} if simulation.agreement is None else {each.name: each for each in simulation.agreement.items}
+    result = {} if simulation.agreement is None else {each.name: each for each in simulation.agreement.items}
     rows = []
     for each in simulation.model.evidence:
-        judged = found.get(each.name)
+        judged = result.get(each.name)
         judgement: tuple[Value, ...] = (None, None, "not used")
         if judged is not None:
             judgement = finite(judged.alone.value), finite(judged.chance), judged.verdict.value
@@ -242,7 +242,7 @@ def check_section(simulation: RunResult) -> Section:
         (
             check.name,
             str(check.cell),
-            check.base.found,
+            check.base.content,
             check.trials,
             check.failed,
             check.because,
@@ -341,9 +341,9 @@ def _unnamed(simulation: RunResult) -> Iterator[tuple[str, str, float, Cell | No
     named = {frozenset((c.first, c.second)) for c in model.definitions.correlations}
     for group in model.groups:
         for first, second in combinations(group.names, 2):
-            found = drawn_correlation(model.groups, first, second)
-            if frozenset((first, second)) not in named and found is not None and abs(found) >= CHANGED:
-                yield first, second, 0.0 if group.where is None else found, group.where
+            value = drawn_correlation(model.groups, first, second)
+            if frozenset((first, second)) not in named and value is not None and abs(value) >= CHANGED:
+                yield first, second, 0.0 if group.where is None else value, group.where
 
 
 def _met(simulation: RunResult, first: str, second: str, asked: float, row: Cell | None) -> CorrelationMet:

@@ -83,9 +83,9 @@ def lost_sentences(simulation: RunResult) -> list[str]:
     """
     if not simulation.error_trials:
         return []
-    found = sorted(errors_met(simulation), key=lambda met: -met.trials)
-    lines = [_lost(simulation, met) for met in found[:_MOST_NAMED]]
-    lines += [f"… and {len(found) - _MOST_NAMED} more, all on the sheet Results"] if len(found) > _MOST_NAMED else []
+    errors = sorted(errors_met(simulation), key=lambda met: -met.trials)
+    lines = [_lost(simulation, met) for met in errors[:_MOST_NAMED]]
+    lines += [f"… and {len(errors) - _MOST_NAMED} more, all on the sheet Results"] if len(errors) > _MOST_NAMED else []
     return [*lines, *rest_sentences(simulation)]
 
 

@@ -83,8 +83,8 @@ def processor() -> dict[str, str]:
     """
     import numpy
 
-    found: dict[str, list[str]] = numpy.show_config(mode="dicts")["SIMD Extensions"]  # type: ignore[assignment]
-    features = [*found.get("baseline", []), *found.get("found", [])]
+    result: dict[str, list[str]] = numpy.show_config(mode="dicts")["SIMD Extensions"]  # type: ignore[assignment]
+    features = [*result.get("baseline", []), *result.get("found", [])]
     return {
         "machine": platform.machine(),
         "system": platform.system(),
@@ -217,13 +217,13 @@ def _file(simulation: RunResult) -> Section:
     return Section("file", "Workbook", entries)
 
 
-def _changed_from(found: ChangedFrom) -> Section:
+def _changed_from(result: ChangedFrom) -> Section:
     """Say what the workbook of the run differs in from the one that it was made of."""
     entries = (
-        Entry("name", "Workbook that was changed", found.name),
-        Entry("sha256", "SHA-256 of its file", found.sha256),
+        Entry("name", "Workbook that was changed", result.name),
+        Entry("sha256", "SHA-256 of its file", result.sha256),
     )
-    rows = tuple((change,) for change in found.changes)
+    rows = tuple((change,) for change in result.changes)
     return Section(CHANGED_FROM, "Changed from that workbook", entries, RecordTable((("change", "Change"),), rows))
 
 
@@ -283,12 +283,12 @@ def recorded_feeds(record: Record) -> list[tuple[Feed, str]]:
     """
     if FEEDS not in record:
         return []
-    found = []
+    result = []
     for row in record.rows(FEEDS):
         texts = {key: str(row[key]) for key, _ in _FEED_COLUMNS}
         book = "" if texts["book"] == str(record["file.name"]) else texts["book"]
-        found.append((Feed(texts["assumption"], book, texts["answer"], texts["file"]), texts["sha256"]))
-    return found
+        result.append((Feed(texts["assumption"], book, texts["answer"], texts["file"]), texts["sha256"]))
+    return result
 
 
 def _counts(simulation: RunResult) -> Section:
@@ -308,13 +308,13 @@ def _counts(simulation: RunResult) -> Section:
 
 def _weight_entries(simulation: RunResult) -> tuple[Entry, ...]:
     """Return the weights that evidence gives the accepted trials, where they do not count alike."""
-    found = simulation.weighting
-    if found is None:
+    weighting = simulation.weighting
+    if weighting is None:
         return ()
     return (
-        Entry("effective", "Effective sample size", found.effective),
-        Entry("mean_weight", "Mean weight", found.mean),
-        Entry("largest_weight", "Largest weight", found.largest),
+        Entry("effective", "Effective sample size", weighting.effective),
+        Entry("mean_weight", "Mean weight", weighting.mean),
+        Entry("largest_weight", "Largest weight", weighting.largest),
     )
 
 
@@ -361,40 +361,40 @@ def _sampling(simulation: RunResult) -> Section:
     return Section("sampling", "Sampling", entries)
 
 
-def _rare(found: RareAccount) -> Section:
-    low, high = found.acceptance.interval or (None, None)
+def _rare(account: RareAccount) -> Section:
+    low, high = account.acceptance.interval or (None, None)
     entries = (
-        Entry("in_words", "In words", found.sentence),
-        Entry("evaluations", "Trials evaluated in all", found.evaluations),
-        Entry("learning", "Of them, to learn where accepted ones lie", found.learning),
-        Entry("proposals", "Of them, drawn where accepted ones lie", found.proposals),
-        Entry("proposals_accepted", "Drawn there and accepted by the filters", found.proposals_accepted),
-        Entry("kept", "Kept, with equal weight", found.kept),
-        Entry("effective", "Effective sample size of the kept ones", finite(found.size)),
-        Entry("fresh", "Drawn after enough were kept, for the probability", found.fresh),
-        Entry("acceptance", "Probability that a trial is accepted", finite(found.acceptance.value)),
+        Entry("in_words", "In words", account.sentence),
+        Entry("evaluations", "Trials evaluated in all", account.evaluations),
+        Entry("learning", "Of them, to learn where accepted ones lie", account.learning),
+        Entry("proposals", "Of them, drawn where accepted ones lie", account.proposals),
+        Entry("proposals_accepted", "Drawn there and accepted by the filters", account.proposals_accepted),
+        Entry("kept", "Kept, with equal weight", account.kept),
+        Entry("effective", "Effective sample size of the kept ones", finite(account.size)),
+        Entry("fresh", "Drawn after enough were kept, for the probability", account.fresh),
+        Entry("acceptance", "Probability that a trial is accepted", finite(account.acceptance.value)),
         Entry("acceptance_low", "Its 95 % interval (by its logarithm), from", finite(low)),
         Entry("acceptance_high", "to", finite(high)),
-        Entry("acceptance_effective", "Effective sample size behind it", finite(found.effective)),
-        Entry("searched", "The same probability by splitting, for comparison", finite(found.searched)),
-        Entry("ways", "Ways (sets of branches) searched separately", found.ways),
-        Entry("explored", "Probability of parts that splitting missed", finite(found.explored)),
-        Entry("at_least", "The probability is only a lower limit", found.at_least),
-        Entry("plain_accepted", "Plain trials before the search that were accepted", found.plain_accepted),
-        Entry("checked", "Trials from widened assumptions after the search", found.checked),
-        Entry("missed", "Probability of parts met but not described", finite(found.missed)),
-        Entry("levels", "Levels of the splitting", found.levels),
-        Entry("components", "Normal distributions in the mixture", found.components),
-        Entry("directions", "Directions in which it was learned", found.directions),
-        Entry("dimensions", "Assumptions that are drawn", found.dimensions),
+        Entry("acceptance_effective", "Effective sample size behind it", finite(account.effective)),
+        Entry("searched", "The same probability by splitting, for comparison", finite(account.searched)),
+        Entry("ways", "Ways (sets of branches) searched separately", account.ways),
+        Entry("explored", "Probability of parts that splitting missed", finite(account.explored)),
+        Entry("at_least", "The probability is only a lower limit", account.at_least),
+        Entry("plain_accepted", "Plain trials before the search that were accepted", account.plain_accepted),
+        Entry("checked", "Trials from widened assumptions after the search", account.checked),
+        Entry("missed", "Probability of parts met but not described", finite(account.missed)),
+        Entry("levels", "Levels of the splitting", account.levels),
+        Entry("components", "Normal distributions in the mixture", account.components),
+        Entry("directions", "Directions in which it was learned", account.directions),
+        Entry("dimensions", "Assumptions that are drawn", account.dimensions),
         *(
-            (Entry("solved", "Assumptions that the filters were solved for", ", ".join(found.solved)),)
-            if found.solved
+            (Entry("solved", "Assumptions that the filters were solved for", ", ".join(account.solved)),)
+            if account.solved
             else ()
         ),
         Entry("engine", "Engine of the search and of its trials", "numpy"),
-        Entry("lost", "Trials of the search with errors in cells", found.lost),
-        Entry("faulty", "Accepted trials with an error in a forecast", found.faulty),
+        Entry("lost", "Trials of the search with errors in cells", account.lost),
+        Entry("faulty", "Accepted trials with an error in a forecast", account.faulty),
     )
     return Section("rare", "Search for rare accepted trials", entries)
 
@@ -418,8 +418,8 @@ def _messages(key: str, title: str, messages: Sequence[str]) -> Section:
     return Section(key, title, table=RecordTable((("message", "Message"),), rows))
 
 
-def _entries(found: Mapping[str, str]) -> tuple[Entry, ...]:
-    return tuple(Entry(key, _LABELS.get(key, key), text) for key, text in found.items())
+def _entries(result: Mapping[str, str]) -> tuple[Entry, ...]:
+    return tuple(Entry(key, _LABELS.get(key, key), text) for key, text in result.items())
 
 
 def fingerprint(simulation: RunResult) -> str:

@@ -83,11 +83,11 @@ def needed_contents(model: CompiledModel) -> dict[Cell, str]:
     linked = sorted({cell.sheet for cell in cells if cell.sheet not in workbook.sheets and workbook.sheet_of(cell)})
     ranks = {name: rank for rank, name in enumerate((*workbook.sheets, *linked))}
     known = (cell for cell in cells if cell.sheet in ranks)
-    found = {}
+    result = {}
     for cell in sorted(known, key=lambda cell: (ranks[cell.sheet], cell)):
         if text := content_text(workbook, cell, saved, tabulated):
-            found[cell] = text
-    return found
+            result[cell] = text
+    return result
 
 
 def definition_cells(workbook: Workbook) -> set[Cell]:
@@ -209,20 +209,20 @@ def _unpack(record: Record) -> dict[str, str]:
     try:
         stream = zlib.decompressobj()
         packed = stream.decompress(base64.b64decode("".join(map(str, pieces)), validate=True), _MOST_BYTES)
-        found = json.loads(packed or b"{}")
+        value = json.loads(packed or b"{}")
     except (binascii.Error, zlib.error, ValueError) as error:
         raise WorkbookError("the cells in the record cannot be read", hint=EDITED) from error
-    return {str(address): str(text) for address, text in dict(found).items()}
+    return {str(address): str(text) for address, text in dict(value).items()}
 
 
 def _cell(address: str) -> Cell:
     try:
-        found = parse_address(address)
+        reference = parse_address(address)
     except ValueError:
-        found = None
-    if not isinstance(found, Cell):
+        reference = None
+    if not isinstance(reference, Cell):
         raise WorkbookError(f"the record names the cell {address!r}, which is not one", hint=EDITED)
-    return found
+    return reference
 
 
 def structure_section(model: CompiledModel, contents: Collection[str]) -> Section:
@@ -261,10 +261,10 @@ def _words(texts: Collection[str]) -> set[str]:
 def _find_mentioned(names: Collection[DefinedName], words: set[str]) -> Iterator[DefinedName]:
     """Return the names among the words, and those that these mention in turn."""
     waiting = {name for name in names if not name.name.casefold().startswith(("_xlnm.", "_xlmc_"))}
-    while found := {name for name in waiting if name.name.casefold() in words}:
-        yield from found
-        waiting -= found
-        words = words | _words([name.text for name in found])
+    while defined_names := {name for name in waiting if name.name.casefold() in words}:
+        yield from defined_names
+        waiting -= defined_names
+        words = words | _words([name.text for name in defined_names])
 
 
 def _sheets_read(model: CompiledModel) -> list[str]:
@@ -276,13 +276,13 @@ def _sheets_read(model: CompiledModel) -> list[str]:
 
 def _ranges(rows: Iterable[int]) -> str:
     """`{3, 4, 5, 9} -> '3-5, 9'`."""
-    found: list[list[int]] = []
+    result: list[list[int]] = []
     for row in sorted(rows):
-        if found and row == found[-1][1] + 1:
-            found[-1][1] = row
+        if result and row == result[-1][1] + 1:
+            result[-1][1] = row
         else:
-            found.append([row, row])
-    return ", ".join(str(first) if first == last else f"{first}-{last}" for first, last in found)
+            result.append([row, row])
+    return ", ".join(str(first) if first == last else f"{first}-{last}" for first, last in result)
 
 
 def _table_text(table: Table) -> str:

@@ -100,12 +100,12 @@ class Record:
 
     def as_dict(self) -> dict[str, dict[str, Value | list[dict[str, Value]]]]:
         """Everything by key, as JSON holds it: section -> entry -> value, with the table under `rows`."""
-        found: dict[str, dict[str, Value | list[dict[str, Value]]]] = {}
+        result: dict[str, dict[str, Value | list[dict[str, Value]]]] = {}
         for section in self.sections:
-            found[section.key] = {entry.key: entry.value for entry in section.entries}
+            result[section.key] = {entry.key: entry.value for entry in section.entries}
             if section.table is not None:
-                found[section.key]["rows"] = section.table.as_dicts()
-        return found
+                result[section.key]["rows"] = section.table.as_dicts()
+        return result
 
 
 _KEY: Final = re.compile(r"(?P<section>[a-z]\w*)(?:\.(?P<entry>\w+)|\[(?P<row>\d+)\])?")
@@ -130,15 +130,15 @@ def read_record(workbook: Workbook) -> Record:
     """
     sheets = workbook.sheets
     likely = sheets.holding(_MARKS) if isinstance(sheets, LazySheets) else []  # large ones are not parsed for it
-    found = [sheet for sheet in map(sheets.__getitem__, likely or sheets) if _holds_record(sheet)]
-    if not found:
+    result = [sheet for sheet in map(sheets.__getitem__, likely or sheets) if _holds_record(sheet)]
+    if not result:
         hint = "Give the workbook that xlmc simulate wrote, such as case-results.xlsx"
         raise WorkbookError("the workbook holds no record of a run", where=workbook.name, hint=hint)
-    if len(found) > 1:
-        names = ", ".join(repr(sheet.name) for sheet in found)
+    if len(result) > 1:
+        names = ", ".join(repr(sheet.name) for sheet in result)
         hint = "Delete all but the one of the run to repeat"
         raise WorkbookError(f"the sheets {names} each hold a record of a run", where=workbook.name, hint=hint)
-    return Record(tuple(_sections(found[0].cells)))
+    return Record(tuple(_sections(result[0].cells)))
 
 
 def _holds_record(sheet: Sheet) -> bool:
@@ -151,12 +151,12 @@ def _sections(cells: _Cells) -> Iterator[Section]:
     titles: dict[str, str] = {}
     entries: dict[str, list[Entry]] = {}
     rows: dict[str, list[int]] = {}
-    for row, found in _rows_with_keys(cells):
-        section = found["section"]
-        if found["entry"] is not None:
+    for row, match in _rows_with_keys(cells):
+        section = match["section"]
+        if match["entry"] is not None:
             label = str(_value(cells, row, _LABELS) or "")
-            entries.setdefault(section, []).append(Entry(found["entry"], label, _value(cells, row, _VALUES)))
-        elif found["row"] is not None:
+            entries.setdefault(section, []).append(Entry(match["entry"], label, _value(cells, row, _VALUES)))
+        elif match["row"] is not None:
             rows.setdefault(section, []).append(row)
         else:
             titles[section] = str(_value(cells, row, _LABELS) or "")
@@ -168,9 +168,9 @@ def _sections(cells: _Cells) -> Iterator[Section]:
 def _rows_with_keys(cells: _Cells) -> Iterator[tuple[int, re.Match[str]]]:
     """Return the rows that have a key, in their order."""
     for row in sorted(row for row, column in cells if column == _KEYS):
-        found = _KEY.fullmatch(str(cells[row, _KEYS].value))
-        if found is not None:
-            yield row, found
+        match = _KEY.fullmatch(str(cells[row, _KEYS].value))
+        if match is not None:
+            yield row, match
 
 
 def _table(cells: _Cells, rows: list[int]) -> RecordTable:

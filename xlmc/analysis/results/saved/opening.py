@@ -89,14 +89,14 @@ def open_run(path: str | Path, python: Python | None = None, functions: OwnFunct
     """
     path = Path(path)
     with open_package(path) as package:
-        found = _document(package, path)
-        model = _model(package, found, path, python, _functions(found, functions, path))
+        result = _document(package, path)
+        model = _model(package, result, path, python, _functions(result, functions, path))
         try:
-            if settings_of(found["settings"]).evidence == "weights":
+            if settings_of(result["settings"]).evidence == "weights":
                 model = weighing(model)
-            columns = _Columns(found["columns"], model, path)
+            columns = _Columns(result["columns"], model, path)
             columns.read(package)
-            return _simulation(found, model, columns)
+            return _simulation(result, model, columns)
         except (KeyError, ValueError, SimulationError) as error:
             raise _damage_error(path, error) from error
 
@@ -111,8 +111,8 @@ def refuse_other_function(run: RunResult, path: str | Path) -> None:
     draws = {name: np.array(column[rows]) for name, column in run.inputs.items()}
     if not draws or not rows.stop:
         return
-    for name, found in run.model.function(draws).items():
-        if name not in run.labels and not np.array_equal(found, run.forecasts[name][rows], equal_nan=True):
+    for name, values in run.model.function(draws).items():
+        if name not in run.labels and not np.array_equal(values, run.forecasts[name][rows], equal_nan=True):
             message = f"the function gives other numbers as {name!r} than this run has"
             raise SimulationError(message, where=Path(path), hint="Give the model that was run")
 
@@ -123,41 +123,41 @@ def _document(package: Package, path: Path) -> Document:
     with package.reading(RUN) as entry:
         data = entry.read()
     try:
-        found = mapping(json.loads(data), "its format")
-        require(found.get("format") == FORMAT, "its format")
-        whole(found.get("version"), "its version")
+        result = mapping(json.loads(data), "its format")
+        require(result.get("format") == FORMAT, "its format")
+        whole(result.get("version"), "its version")
     except (ValueError, RecursionError) as error:
         raise _damage_error(path, error) from error
-    if found["version"] != VERSION:
-        message = f"the saved run is of version {found['version']}, and this xlmc reads version {VERSION}"
+    if result["version"] != VERSION:
+        message = f"the saved run is of version {result['version']}, and this xlmc reads version {VERSION}"
         raise WorkbookError(message, where=path, hint="Install the xlmc that it was saved with")
-    return dict(found)
+    return dict(result)
 
 
-def _functions(found: Document, given: OwnFunctions | None, path: Path) -> OwnFunctions | None:
+def _functions(result: Document, given: OwnFunctions | None, path: Path) -> OwnFunctions | None:
     """Return the functions that the run's formulas called; None where there were none."""
-    if "functions" not in found:
+    if "functions" not in result:
         return None
     try:
-        about = build(_Book, found["functions"], "its functions")
+        about = build(_Book, result["functions"], "its functions")
     except (KeyError, ValueError) as error:
         raise _damage_error(path, error) from error
     return the_same_functions(given, about.name, about.sha256, path)
 
 
 def _model(
-    package: Package, found: Document, path: Path, python: Python | None, functions: OwnFunctions | None
+    package: Package, result: Document, path: Path, python: Python | None, functions: OwnFunctions | None
 ) -> CompiledModel:
     try:
-        about = build(_Book, found["workbook"], "its workbook")
+        about = build(_Book, result["workbook"], "its workbook")
     except (KeyError, ValueError) as error:
         raise _damage_error(path, error) from error
     alone = _model_of(package, WORKBOOK, about, path, python, functions)
-    if "feeds" not in found:
+    if "feeds" not in result:
         return alone
     try:
-        feeds = tuple(build(Feed, each, "its feeds") for each in found["feeds"])
-        books = [build(_Book, each, "the workbooks that fed it") for each in found["fed_by"]]
+        feeds = tuple(build(Feed, each, "its feeds") for each in result["feeds"])
+        books = [build(_Book, each, "the workbooks that fed it") for each in result["fed_by"]]
         sources = {
             each.name: _model_of(package, f"fed/{n}", each, path, None, functions) for n, each in enumerate(books)
         }
@@ -223,10 +223,10 @@ def _names_now(model: CompiledModel) -> dict[str, str]:
     }
 
 
-def _by_names_now(found: object, model: CompiledModel) -> object:
+def _by_names_now(value: object, model: CompiledModel) -> object:
     """Return what a document says of forecasts by the names that these have now."""
     named = _names_now(model)
-    return {named.get(key, key): each for key, each in found.items()} if isinstance(found, dict) else found
+    return {named.get(key, key): each for key, each in value.items()} if isinstance(value, dict) else value
 
 
 class _Columns:
@@ -236,11 +236,11 @@ class _Columns:
         ValueError: they are not those of the model.
     """
 
-    def __init__(self, found: object, model: CompiledModel, path: Path) -> None:
-        require(isinstance(found, list), "its columns")
-        assert isinstance(found, list)
+    def __init__(self, value: object, model: CompiledModel, path: Path) -> None:
+        require(isinstance(value, list), "its columns")
+        assert isinstance(value, list)
         inputs = {name: a.name for a in model.live for name in reversed(a.names)}
-        listed = [_called(build(_Column, each, "a column"), inputs, _names_now(model)) for each in found]
+        listed = [_called(build(_Column, each, "a column"), inputs, _names_now(model)) for each in value]
         self._listed, self._path = listed, path
         self._names = {kind: [each.name for each in listed if each.kind == kind] for kind in _KINDS}
         live = [a.name for a in model.live]
@@ -271,7 +271,7 @@ class _Columns:
                     self._keeper.write_if_full()
             require(digest.hexdigest() == about.sha256, f"the column {about.entry}: its SHA-256 is another")
         accepted = lengths["trial"]
-        require(all(len(found) <= 1 for found in lengths.values()), "columns of different lengths")
+        require(all(len(result) <= 1 for result in lengths.values()), "columns of different lengths")
         require(
             lengths["forecast"] <= accepted and max(lengths["input"], default=0) <= max(accepted), "too long columns"
         )
@@ -287,18 +287,18 @@ def _spelt(model: CompiledModel) -> dict[str, str]:
     return {**others, **{name_key(name): name for name in model.draws}}
 
 
-def _simulation(found: Document, model: CompiledModel, columns: _Columns) -> RunResult:
-    settings, spelt = settings_of(found["settings"]), _spelt(model)
-    order, invalid = texts(found["order"], "its order of dimensions"), counts(found["invalid"], "its invalid draws")
+def _simulation(result: Document, model: CompiledModel, columns: _Columns) -> RunResult:
+    settings, spelt = settings_of(result["settings"]), _spelt(model)
+    order, invalid = texts(result["order"], "its order of dimensions"), counts(result["invalid"], "its invalid draws")
     require(set(order) <= spelt.keys(), "its order of dimensions")
     require(set(invalid) <= spelt.keys(), "its invalid draws")
     plan = replace(SamplingPlan.of(settings.sampling, settings.trials), order=tuple(map(spelt.__getitem__, order)))
-    trials = whole(found["trials"], "its number of trials")
+    trials = whole(result["trials"], "its number of trials")
     require(1 <= trials <= plan.trials, "its number of trials")
     index = columns.of("trial")[""]
-    rare = rare_of(found["rare"])
+    rare = rare_of(result["rare"])
     _check_index(index, trials if rare is None else rare.kept)
-    forecasts, faults = columns.of("forecast"), mapping(_by_names_now(found["faults"], model), "its faults")
+    forecasts, faults = columns.of("forecast"), mapping(_by_names_now(result["faults"], model), "its faults")
     for name in forecasts:
         require(not _holds_infinity(forecasts[name]), f"the forecast {name!r}")
     inputs, prior = columns.of("input"), columns.of("prior")
@@ -308,28 +308,28 @@ def _simulation(found: Document, model: CompiledModel, columns: _Columns) -> Run
         model=model,
         settings=settings,
         plan=plan,
-        block=max(1, whole(found["block"], "the size of its blocks")),
+        block=max(1, whole(result["block"], "the size of its blocks")),
         trials=trials,
         accepted_index=index,
         inputs=inputs,
         prior=prior,
         forecasts=forecasts,
         faults={name: counts(faults[name], f"the faults of {name!r}") for name in forecasts},
-        tally=tally_of(found["tally"], len(model.filters), trials),
+        tally=tally_of(result["tally"], len(model.filters), trials),
         invalid=Counter({spelt[name]: count for name, count in invalid.items()}),
-        error_trials=whole(found["error_trials"], "its number of trials with errors"),
-        stopped=stopped_of(found["stopped"]),
+        error_trials=whole(result["error_trials"], "its number of trials with errors"),
+        stopped=stopped_of(result["stopped"]),
         rare=rare,
-        origin=origin_of(found["origin"]),
-        changed_from=changed_from_of(found.get("changed_from")),
-        discards=_discards(_by_names_now(found.get("discards", {}), model), model),
-        labels=_labels(_by_names_now(found.get("labels", {}), model), model, forecasts),
+        origin=origin_of(result["origin"]),
+        changed_from=changed_from_of(result.get("changed_from")),
+        discards=_discards(_by_names_now(result.get("discards", {}), model), model),
+        labels=_labels(_by_names_now(result.get("labels", {}), model), model, forecasts),
     )
 
 
-def _labels(found: object, model: CompiledModel, forecasts: Mapping[str, Column]) -> dict[str, tuple[str, ...]]:
+def _labels(value: object, model: CompiledModel, forecasts: Mapping[str, Column]) -> dict[str, tuple[str, ...]]:
     """Return the texts of forecasts whose answers are texts; a run saved before texts were answers has none of them."""
-    given = mapping(found, "its texts")
+    given = mapping(value, "its texts")
     names = [model.forecasts[number].name for number in model.categories]
     require(set(given) <= set(names), "its texts, which are read otherwise")
     read = {name: tuple(texts(given[name], f"the texts of {name!r}")) for name in given}
@@ -341,9 +341,9 @@ def _labels(found: object, model: CompiledModel, forecasts: Mapping[str, Column]
     return read
 
 
-def _discards(found: object, model: CompiledModel) -> dict[str, Counter[str]]:
+def _discards(value: object, model: CompiledModel) -> dict[str, Counter[str]]:
     """Return the counts of filters of some forecasts only; runs saved before there were any have none."""
-    given = mapping(found, "its discarded trials")
+    given = mapping(value, "its discarded trials")
     own = filters_by_forecast(model.forecasts, model.forecast_filters)
     names = {
         forecast.name: [model.forecast_filters[index].name for index in indices]

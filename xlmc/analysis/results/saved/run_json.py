@@ -59,13 +59,13 @@ def _goal_document(goal: Goal | None, kind: type[Goal]) -> object:
     return goal.number if isinstance(goal, WholeGoal) else asdict(goal)
 
 
-def settings_of(found: object) -> Settings:
+def settings_of(value: object) -> Settings:
     """Read the settings again.
 
     Raises:
         ValueError, SimulationError: they are none.
     """
-    given = dict(mapping(found, "its settings"))
+    given = dict(mapping(value, "its settings"))
     stopping = _stopping_of(given.pop("stopping", {}))
     settings = replace(build(Settings, given, "its settings"), stopping=stopping)
     check_settings(settings)
@@ -73,9 +73,9 @@ def settings_of(found: object) -> Settings:
     return settings
 
 
-def _stopping_of(found: object) -> Stopping:
+def _stopping_of(value: object) -> Stopping:
     """Read what was to end the run; anything that no run can be asked for is refused."""
-    given = dict(mapping(found, "its end"))
+    given = dict(mapping(value, "its end"))
     require("goal" not in given, "its end has the unknown field goal")  # each goal has a field of its own
     goals = [_goal_of(kind, given.pop(kind.saved_as or kind.key, None)) for kind in GOALS.values()]
     forecasts = texts(given.pop("forecasts", []), "the forecasts that its end looks at")
@@ -83,10 +83,10 @@ def _stopping_of(found: object) -> Stopping:
     return replace(limits, goal=only_one([goal for goal in goals if goal is not None]), forecasts=forecasts)
 
 
-def _goal_of(kind: type[Goal], found: object) -> Goal | None:
-    if found is None:
+def _goal_of(kind: type[Goal], value: object) -> Goal | None:
+    if value is None:
         return None
-    return build(kind, {"number": found} if issubclass(kind, WholeGoal) else found, f"its goal, {kind.noun}")
+    return build(kind, {"number": value} if issubclass(kind, WholeGoal) else value, f"its goal, {kind.noun}")
 
 
 def tally_document(tally: FilterTally) -> dict[str, Any]:
@@ -100,13 +100,13 @@ def tally_document(tally: FilterTally) -> dict[str, Any]:
     }
 
 
-def tally_of(found: object, filters: int, trials: int) -> FilterTally:
+def tally_of(value: object, filters: int, trials: int) -> FilterTally:
     """Read the counts of so many filters over so many trials again.
 
     Raises:
         ValueError: they are none.
     """
-    given = build(_Counts, found, "its filters")
+    given = build(_Counts, value, "its filters")
     rows = (given.rejected, given.only, *given.together)
     require(len(given.together) == len(given.errors) == filters, "its filters")
     require(all(len(row) == filters and all(0 <= count <= trials for count in row) for row in rows), "its filters")
@@ -130,48 +130,48 @@ class _Counts:
     by_error: int
 
 
-def stopped_of(found: object) -> Stopped:
+def stopped_of(value: object) -> Stopped:
     """Return what ended the run.
 
     Raises:
         ValueError: it is something else.
     """
-    stopped = build(Stopped, found, "its end")
+    stopped = build(Stopped, value, "its end")
     require(stopped.by in {*GOALS, *WITHOUT_GOAL}, "its end")
     return stopped
 
 
-def rare_of(found: object) -> RareAccount | None:
+def rare_of(value: object) -> RareAccount | None:
     """How the accepted trials were found, if they are rare.
 
     Raises:
         ValueError: it is something else.
     """
-    if found is None:
+    if value is None:
         return None
-    account = build(RareAccount, found, "its account of rare trials")
+    account = build(RareAccount, value, "its account of rare trials")
     require(0 < account.acceptance.value <= 1, "its probability of acceptance")
     numbers = [each.name for each in fields(account) if each.name not in ("acceptance", "solved")]
     require(all(0 <= getattr(account, name) < 2**63 for name in numbers), "its search")
     return account
 
 
-def origin_of(found: object) -> Origin:
+def origin_of(value: object) -> Origin:
     """Return the software and the processor of the run.
 
     Raises:
         ValueError: it is something else.
     """
-    return build(Origin, found, "its origin")
+    return build(Origin, value, "its origin")
 
 
-def changed_from_of(found: object) -> ChangedFrom | None:
+def changed_from_of(value: object) -> ChangedFrom | None:
     """Return the workbook that the run's own was made of, if it is such a run.
 
     Raises:
         ValueError: it is something else.
     """
-    return None if found is None else build(ChangedFrom, found, "its account of what was changed")
+    return None if value is None else build(ChangedFrom, value, "its account of what was changed")
 
 
 def require(holds: bool, what: str) -> None:
@@ -184,66 +184,66 @@ def require(holds: bool, what: str) -> None:
         raise ValueError(what)
 
 
-def build(kind: type[T], found: object, what: str) -> T:
+def build(kind: type[T], result: object, what: str) -> T:
     """Make an instance of a dataclass from its fields; those with a default may be missing. Lists become tuples.
 
     Raises:
         ValueError: a field is missing or unknown, or has another type than it must.
     """
-    require(isinstance(found, dict), what)
-    assert isinstance(found, dict)
+    require(isinstance(result, dict), what)
+    assert isinstance(result, dict)
     assert is_dataclass(kind)
     required = {each.name for each in fields(kind) if each.default is MISSING and each.default_factory is MISSING}
     hints = get_type_hints(kind)
     known = {each.name: hints[each.name] for each in fields(kind)}
-    require(required <= found.keys(), f"{what} lacks {', '.join(sorted(required - found.keys()))}")
+    require(required <= result.keys(), f"{what} lacks {', '.join(sorted(required - result.keys()))}")
     require(
-        found.keys() <= known.keys(), f"{what} has the unknown field {', '.join(sorted(found.keys() - known.keys()))}"
+        result.keys() <= known.keys(), f"{what} has the unknown field {', '.join(sorted(result.keys() - known.keys()))}"
     )
-    given = {name: _read_typed(known[name], value, f"{what}, {name}") for name, value in found.items()}
+    given = {name: _read_typed(known[name], value, f"{what}, {name}") for name, value in result.items()}
     return kind(**given)
 
 
-def mapping(found: object, what: str) -> dict[str, Any]:
+def mapping(value: object, what: str) -> dict[str, Any]:
     """Require a JSON object.
 
     Raises:
         ValueError: it is none.
     """
-    require(isinstance(found, dict), what)
-    assert isinstance(found, dict)
-    return found
+    require(isinstance(value, dict), what)
+    assert isinstance(value, dict)
+    return value
 
 
-def counts(found: object, what: str) -> Counter[str]:
+def counts(value: object, what: str) -> Counter[str]:
     """Name -> how many.
 
     Raises:
         ValueError: it is something else.
     """
-    return Counter({name: whole(count, what) for name, count in mapping(found, what).items()})
+    return Counter({name: whole(count, what) for name, count in mapping(value, what).items()})
 
 
-def texts(found: object, what: str) -> tuple[str, ...]:
+def texts(value: object, what: str) -> tuple[str, ...]:
     """Require a list of texts.
 
     Raises:
         ValueError: it is something else.
     """
-    require(isinstance(found, list) and all(isinstance(each, str) for each in found), what)
-    assert isinstance(found, list)
-    return tuple(found)
+    require(isinstance(value, list) and all(isinstance(each, str) for each in value), what)
+    assert isinstance(value, list)
+    return tuple(value)
 
 
-def whole(found: object, what: str) -> int:
+def whole(value: object, what: str) -> int:
     """Require a count, 0 or more.
 
     Raises:
         ValueError: it is none.
     """
-    require(type(found) is int and 0 <= found < _LARGEST, what)
-    assert isinstance(found, int)
-    return found
+    require(type(value) is int and 0 <= value < _LARGEST, what)
+    assert isinstance(value, int)
+    return value
 
 
 def _read_typed(hint: Any, value: object, what: str) -> Any:

@@ -76,8 +76,10 @@ def limits_text(filter_: Filter) -> str:
     if filter_.evidence is not None:
         return evidence_text(filter_.evidence)
     limits = ("at_least", "above", "at_most", "below")
-    said = [f"{key.replace('_', ' ')} {filter_.text_of(key)}" for key in limits if getattr(filter_, key) is not None]
-    return " and ".join(said) or "TRUE"
+    messages = [
+        f"{key.replace('_', ' ')} {filter_.text_of(key)}" for key in limits if getattr(filter_, key) is not None
+    ]
+    return " and ".join(messages) or "TRUE"
 
 
 def evidence_text(evidence: Evidence) -> str:

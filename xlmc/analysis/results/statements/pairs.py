@@ -71,8 +71,8 @@ def pairs_of(simulation: RunResult, most: int = PAIRS) -> list[Pair]:
     """Return the first `most` pairs of forecasts that vary and have trials in common, in the order of the workbook."""
     results = simulation.results
     forecasts = [each for each in simulation.model.forecasts if results[each.name].statistics.range_width.value > 0.0]
-    found = (_pair(simulation, *two) for two in combinations(forecasts, 2))
-    return list(islice((pair for pair in found if pair is not None), most))
+    result = (_pair(simulation, *two) for two in combinations(forecasts, 2))
+    return list(islice((pair for pair in result if pair is not None), most))
 
 
 def _pair(simulation: RunResult, first: Forecast, second: Forecast) -> Pair | None:
@@ -170,5 +170,5 @@ def _correlation(columns: tuple[Floats, Floats], replicate: Replicates | None) -
     if not known.any():
         return Estimate(math.nan), 0
     of = None if replicate is None else replicate[:most][known]
-    found = rank_correlation(first[known], second[known], of)
-    return found, found.n
+    estimate = rank_correlation(first[known], second[known], of)
+    return estimate, estimate.n

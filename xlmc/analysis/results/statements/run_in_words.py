@@ -52,12 +52,12 @@ class Discarded:
 
 def discards_of(simulation: RunResult) -> list[Discarded]:
     """Say what such filters discard, filter by filter, forecast by forecast."""
-    found = []
+    results = []
     for filter_ in simulation.model.forecast_filters:
         for name in filter_.only_for:
             trials = simulation.discards[name][filter_.name]
-            found.append(Discarded(filter_, name, trials, proportion(trials, simulation.accepted)))
-    return found
+            results.append(Discarded(filter_, name, trials, proportion(trials, simulation.accepted)))
+    return results
 
 
 def status(model: CompiledModel, name: str, frozen: bool) -> str:

@@ -61,8 +61,8 @@ def _change_text(change: Change, definitions: Definitions) -> str:
             return f"{name} drawn"
         case Range(name, low, high):
             ends = [("from", low), ("to", high)] if None not in (low, high) else [("at least", low), ("at most", high)]
-            found = (f"{word} {_number_of(definitions, name, _VALUE, end)}" for word, end in ends if end is not None)
-            return " ".join([name, *found])
+            result = (f"{word} {_number_of(definitions, name, _VALUE, end)}" for word, end in ends if end is not None)
+            return " ".join([name, *result])
         case Band(name, low, high):
             return f"{name} from P{show(low)} to P{show(high)}"
         case Numbers(name, values) | Limits(name, values) | Measured(name, values) | Stated(name, values):

@@ -53,12 +53,12 @@ _HOLDS: Final = (
 )
 
 
-def meaning(workbook: Workbook, found: Sequence[Statement]) -> str:
+def meaning(workbook: Workbook, result: Sequence[Statement]) -> str:
     """Return the note that stands below the sentences of a workbook, on what these say."""
     notes = [_SHARES]
-    if any("more probable than not" in each.text for each in found):
+    if any("more probable than not" in each.text for each in result):
         notes.append(_LIKELY)
-    if any(each.kind == "bound" for each in found):
+    if any(each.kind == "bound" for each in result):
         notes.append(_BOUNDS)
     return vocabulary_of(workbook).fill(" ".join([*notes, _HOLDS]))
 
@@ -123,24 +123,24 @@ def _main(result: ForecastResult, part: str, balances: bool) -> Statement | None
         return Statement(name, "probability", f"{name}: {_texts_text(result.categories)}{part}")
     if result.yes is not None:
         return Statement(name, "probability", f"{name}: {_yes_text(result, result.yes, balances)}{part}")
-    found = stated_range(result)
-    if found is None:
+    rounded = stated_range(result)
+    if rounded is None:
         return None
     if definition.role.is_bound:
-        text = _bound_text(found, definition.central, units, trials, balances)
+        text = _bound_text(rounded, definition.central, units, trials, balances)
         return Statement(name, "bound", f"{name}: {text}{part}")
-    text = _range_text(found, definition.central, units, trials, balances)
+    text = _range_text(rounded, definition.central, units, trials, balances)
     return Statement(name, "range", f"{name}: {text}{part}")
 
 
 def _texts_text(categories: Mapping[str, Estimate]) -> str:
     """`high with probability 45.1 % ± 0.4 %, middle 30.3 % ± 0.4 %, low 24.6 % ± 0.3 %`."""
-    said = [f"{text or '(empty)'} {percent_text(share)}" for text, share in categories.items()]
+    messages = [f"{text or '(empty)'} {percent_text(share)}" for text, share in categories.items()]
     first, share = next(iter(categories.items()))
     if share.value == 1.0:
         return f"{first or '(empty)'} in {percent_text(share)}"
-    more = f", and {count_text(len(said) - _MOST_TEXTS)} rarer texts" if len(said) > _MOST_TEXTS else ""
-    return ", ".join([f"{first or '(empty)'} with probability {percent_text(share)}", *said[1:_MOST_TEXTS]]) + more
+    more = f", and {count_text(len(messages) - _MOST_TEXTS)} rarer texts" if len(messages) > _MOST_TEXTS else ""
+    return ", ".join([f"{first or '(empty)'} with probability {percent_text(share)}", *messages[1:_MOST_TEXTS]]) + more
 
 
 _MOST_TEXTS: Final = 6
@@ -220,19 +220,19 @@ def _part_text(result: ForecastResult) -> str:
     return f"; counted in the {count_text(numbers)} of {every} in which it {what}"
 
 
-def _range_text(found: RoundedRange, nominal: float, units: str, trials: int, balances: bool) -> str:
+def _range_text(rounded: RoundedRange, nominal: float, units: str, trials: int, balances: bool) -> str:
     """`more probable than not (52.1 % ± 0.8 %) between 22.0 and 24.2 mph`, where that is so and what matters; else
     `the 80 % range (80.1 % ± 0.3 %) lies between 20.0 and 80.0 mph`.
     """
-    share, between = found.share, found.words(units, "between", "and")
-    if found.low == found.high:
+    share, between = rounded.share, rounded.words(units, "between", "and")
+    if rounded.low == rounded.high:
         if share.value == 1.0:
-            return f"{found.low_text}{units} in {_all(trials)}"
-        between = f"equal to {found.low_text}{units}"
+            return f"{rounded.low_text}{units} in {_all(trials)}"
+        between = f"equal to {rounded.low_text}{units}"
     elif share.value == 1.0:
         return f"{between} in {percent_text(share)}"
     if nominal > LIKELIER or not balances:
-        lies = f"is {found.low_text}{units}" if found.low == found.high else f"lies {between}"
+        lies = f"is {rounded.low_text}{units}" if rounded.low == rounded.high else f"lies {between}"
         return f"the {number_text(100.0 * nominal)} % range ({percent_text(share)}) {lies}"
     if surely_above(share, EVEN):
         return f"more probable than not ({percent_text(share)}) {between}"
@@ -241,9 +241,9 @@ def _range_text(found: RoundedRange, nominal: float, units: str, trials: int, ba
     return f"{percent_text(share)} {between}"
 
 
-def _bound_text(found: RoundedRange, nominal: float, units: str, trials: int, balances: bool) -> str:
+def _bound_text(rounded: RoundedRange, nominal: float, units: str, trials: int, balances: bool) -> str:
     """`at least 22 mph, more probable than not (51.3 % ± 0.4 %)`."""
-    share, side = found.share, found.words(units)
+    share, side = rounded.share, rounded.words(units)
     if share.value == 1.0:
         return f"{side} in {_all(trials)}"
     if balances and surely_above(share, EVEN) and nominal <= LIKELIER:
@@ -282,27 +282,27 @@ def certainties(result: ForecastResult) -> list[Certainty]:
     definition, sample = result.definition, result.sample
     units = f" {definition.units}" if definition.units else ""
     spoken = None if result.yes is not None else stated_range(result)
-    found = [] if spoken is None else _around(spoken, sample, result.form, units)
+    results = [] if spoken is None else _around(spoken, sample, result.form, units)
     threshold, above = definition.threshold, result.statistics.probability_above
     if threshold is not None and above is not None and sample.n:
         at_most = probability_between(sample, -math.inf, threshold)
         form, limit = result.form, f"{result.form.number(threshold)}{units}"
-        found.append(Certainty("at most", -math.inf, threshold, f"{form.side('at most')} {limit}", at_most))
-        found.append(Certainty("over", threshold, math.inf, f"{form.side('above')} {limit}", above))
+        results.append(Certainty("at most", -math.inf, threshold, f"{form.side('at most')} {limit}", at_most))
+        results.append(Certainty("over", threshold, math.inf, f"{form.side('above')} {limit}", above))
     if definition.asked is not None and result.certainty is not None:
         words = f"{range_text(*definition.asked, result.form.number)}{units}"
-        found.append(Certainty("asked", *definition.asked, words, result.certainty))
-    return found
+        results.append(Certainty("asked", *definition.asked, words, result.certainty))
+    return results
 
 
 def _around(spoken: RoundedRange, sample: Sample, form: Form, units: str) -> list[Certainty]:
     """Return the certainties below, in and above a range; below or above alone beside one that has no other end."""
     low, high = spoken.low, spoken.high
-    found = [Certainty("between", low, high, spoken.words(units), spoken.share)]
+    result = [Certainty("between", low, high, spoken.words(units), spoken.share)]
     if spoken.low_text:
         under = probability_between(sample, -math.inf, math.nextafter(low, -math.inf))
-        found.insert(0, Certainty("below", -math.inf, low, f"{form.side('below')} {spoken.low_text}{units}", under))
+        result.insert(0, Certainty("below", -math.inf, low, f"{form.side('below')} {spoken.low_text}{units}", under))
     if spoken.high_text:
         over = probability_above(sample, high)
-        found.append(Certainty("above", high, math.inf, f"{form.side('above')} {spoken.high_text}{units}", over))
-    return found
+        result.append(Certainty("above", high, math.inf, f"{form.side('above')} {spoken.high_text}{units}", over))
+    return result

@@ -85,8 +85,8 @@ def rounded_range(
     value = known[0].value
     if len(known) > 1 and value == known[1].value and (resolution is None or _is_multiple(value, resolution)):
         return rounding.single(value)
-    if found := _least(rounding, _NEAREST_FIRST, nominal):
-        return found
+    if rounded := _least(rounding, _NEAREST_FIRST, nominal):
+        return rounded
     return _widened(rounding, nominal) or _least(rounding, [(0, 0)], nominal, claimed=False)
 
 
@@ -144,16 +144,16 @@ class _Rounding:
         unit = Decimal(1).scaleb(min(0, *(int(end.normalize().as_tuple().exponent) for end in (low, high))))
         return low.quantize(unit), high.quantize(unit)
 
-    def is_whole(self, found: RoundedRange) -> bool:
+    def is_whole(self, rounded: RoundedRange) -> bool:
         """Whether the range holds every trial."""
-        return bool(found.low <= self.sample.x[0] and found.high >= self.sample.x[-1])
+        return bool(rounded.low <= self.sample.x[0] and rounded.high >= self.sample.x[-1])
 
 
 def _least(rounding: _Rounding, steps: Iterable[Steps], nominal: float, *, claimed: bool = True) -> RoundedRange | None:
     """Return the range with the least share of those that hold what is said of them; of equal ones the first."""
     every = dict.fromkeys(rounding.range(each) for each in steps)
-    found = [each for each in every if not claimed or _holds(each.share, nominal)]
-    return min(found, key=lambda each: each.share.value, default=None)
+    roundeds = [each for each in every if not claimed or _holds(each.share, nominal)]
+    return min(roundeds, key=lambda each: each.share.value, default=None)
 
 
 def _holds(share: Estimate, nominal: float) -> bool:
@@ -173,8 +173,8 @@ def _widened(rounding: _Rounding, nominal: float) -> RoundedRange | None:
     The number of steps is doubled until a range holds, and then the least is sought.
     """
     least, most = 0, 1
-    while not _holds((found := rounding.range((most, most))).share, nominal):
-        if rounding.is_whole(found):
+    while not _holds((rounded := rounding.range((most, most))).share, nominal):
+        if rounding.is_whole(rounded):
             return None
         least, most = most, 2 * most
     while most - least > 1:
@@ -183,7 +183,7 @@ def _widened(rounding: _Rounding, nominal: float) -> RoundedRange | None:
     return _least(rounding, [(most - 1, most), (most, most - 1), (most, most)], nominal)
 
 
-def rounded_value(found: Estimate, resolution: float | None = None, form: Form = PLAIN) -> tuple[float, str]:
+def rounded_value(estimate: Estimate, resolution: float | None = None, form: Form = PLAIN) -> tuple[float, str]:
     """Write a number in the digits that its error and the resolution support, and the same in words; not for nan.
 
     >>> rounded_value(Estimate(11.8435, 0.019))
@@ -191,7 +191,7 @@ def rounded_value(found: Estimate, resolution: float | None = None, form: Form =
     >>> rounded_value(Estimate(11.8435, 0.019), 0.5)
     (12.0, '12.0')
     """
-    value = _round(found.value, _unit([found], form.step(found.error or 0.0) or resolution), ROUND_HALF_EVEN)
+    value = _round(estimate.value, _unit([estimate], form.step(estimate.error or 0.0) or resolution), ROUND_HALF_EVEN)
     return float(value), _text(value, form)
 
 
@@ -271,8 +271,8 @@ def _round(value: float, unit: Decimal | None, rounding: str, significant: int =
     step = Decimal(1).scaleb(size + 1 - significant) if unit is None else unit
     if max(abs(step.adjusted()), abs(size)) > _WIDEST:
         return exact
-    found = (exact / step).quantize(Decimal(1), rounding) * step
-    return found.normalize() if unit is None else found
+    number = (exact / step).quantize(Decimal(1), rounding) * step
+    return number.normalize() if unit is None else number
 
 
 def _text(value: Decimal, form: Form) -> str:

@@ -161,19 +161,19 @@ def steps_between(inputs: Inputs, first: RunResult, second: RunResult) -> tuple[
     """Return the steps that can be taken: filters that reject a trial, assumptions with a base value, plain
     distributions.
     """
-    found = []
+    steps = []
     for side, run in enumerate((first, second)):
         rejected = {f.name: int(n) for f, n in zip(run.model.filters, run.tally.rejected, strict=True)}
         items = {f.name for f in run.model.filters if f.evidence is not None}
-        found += [Step("filter", side, name, name in items) for name in inputs.filters[side] if rejected[name]]
+        steps += [Step("filter", side, name, name in items) for name in inputs.filters[side] if rejected[name]]
         base = {a.name: a.base for a in run.model.assumptions}
-        found += [Step("assumption", side, name) for name in inputs.drawn[side] if base[name] is not None]
+        steps += [Step("assumption", side, name) for name in inputs.drawn[side] if base[name] is not None]
     mine, theirs = (_by_key(run.model) for run in (first, second))
     for unlike in inputs.unlike:
         key = name_key(unlike.name)
         if _may_swap(mine[key], theirs[key]):
-            found.append(Step("distribution", 1, theirs[key].name))
-    return tuple(found)
+            steps.append(Step("distribution", 1, theirs[key].name))
+    return tuple(steps)
 
 
 def _by_key(model: CompiledModel) -> dict[str, Assumption]:
@@ -235,13 +235,13 @@ def _narrowed(tier: Sequence[Step], left: Callable[[Iterable[Step]], float]) -> 
     """Leave out groups of many steps that are not needed: halves first, then smaller ones (Zeller & Hildebrandt 2002,
     the complements of delta debugging).
     """
-    found, parts = list(tier), 2
-    while len(found) > _FEW and parts <= len(found):
-        ends = [len(found) * k // parts for k in range(parts + 1)]
-        shorter = (found[:start] + found[end:] for start, end in pairwise(ends))
+    result, parts = list(tier), 2
+    while len(result) > _FEW and parts <= len(result):
+        ends = [len(result) * k // parts for k in range(parts + 1)]
+        shorter = (result[:start] + result[end:] for start, end in pairwise(ends))
         fewer = next((steps for steps in shorter if left(steps) <= 1.0), None)
-        found, parts = (found, 2 * parts) if fewer is None else (fewer, max(parts - 1, 2))
-    return found
+        result, parts = (result, 2 * parts) if fewer is None else (fewer, max(parts - 1, 2))
+    return result
 
 
 def _shortest(tier: Sequence[Step], left: Callable[[Iterable[Step]], float]) -> tuple[Step, ...]:

@@ -313,20 +313,20 @@ class _Search:
         self._causes, self.ended = causes, False
 
     def compare_pair(self, mine: Forecast, theirs: Forecast, factor: float, stated: Tolerances) -> ForecastComparison:
-        found, own = self._difference((), mine, theirs, factor), Accepted.of_run(self._books[0], mine.name)
-        if found.shares:
+        result, own = self._difference((), mine, theirs, factor), Accepted.of_run(self._books[0], mine.name)
+        if result.shares:
             tolerance, was_stated = stated.of_share(mine, own.scale, self._chance)
         else:
             tolerance, was_stated = stated.of(mine, own.scale)
-        limits = found.tolerances(tolerance, self._chance)
-        judgement = judge({name: (change.difference, limits[name]) for name, change in found.changes})
-        rivals, cause = None if found.shares else self._rivalry(mine, theirs, factor), None
+        limits = result.tolerances(tolerance, self._chance)
+        judgement = judge({name: (change.difference, limits[name]) for name, change in result.changes})
+        rivals, cause = None if result.shares else self._rivalry(mine, theirs, factor), None
         if judgement.verdict is Verdict.BEYOND and self._causes and rivals is None:
             try:
                 cause = None if self.ended else self._cause(mine, theirs, factor, limits)
             except _EndedEarly:
                 self.ended = True
-        return ForecastComparison(mine, theirs, factor, tolerance, was_stated, limits, found, judgement, cause, rivals)
+        return ForecastComparison(mine, theirs, factor, tolerance, was_stated, limits, result, judgement, cause, rivals)
 
     def _rivalry(self, mine: Forecast, theirs: Forecast, factor: float) -> Rivalry | None:
         first, second = self._books
@@ -371,10 +371,10 @@ def _match_forecasts(
     mine, theirs = ({name_key(f.name): f for f in model.forecasts} for model in (first, second))
 
     def key_of(name: str, model: CompiledModel) -> str:
-        if (found := by_names(model.forecasts).get(name_key(name))) is None:
+        if (result := by_names(model.forecasts).get(name_key(name))) is None:
             hint = f"there are {', '.join(repr(f.name) for f in model.forecasts)}"
             raise SimulationError(f"there is no forecast {name.strip()!r}", where=model.path.name, hint=hint)
-        return name_key(found.name)
+        return name_key(result.name)
 
     given = {key_of(here, first): key_of(there, second) for here, there in pairs.items()}
     taken = set(given.values())

@@ -228,14 +228,14 @@ def _of_deviations(change: Change) -> Estimate:
 
     The deviation of shares p is √(p(1 − p)); a share is never known better than `least_error`.
     """
-    found = change.difference
-    if found.error is None:
-        return found
+    estimate = change.difference
+    if estimate.error is None:
+        return estimate
     variance = min(change.first.value, change.second.value) ** 2
     share = 0.5 - max(0.25 - variance, 0.0) ** 0.5
-    moved = min(share + least_error(found.n), 0.5)
+    moved = min(share + least_error(estimate.n), 0.5)
     least = (moved * (1.0 - moved)) ** 0.5 - (share * (1.0 - share)) ** 0.5
-    return with_error(found.value, max(found.error, least), found.n - 1.0, 0.95, found.n)
+    return with_error(estimate.value, max(estimate.error, least), estimate.n - 1.0, 0.95, estimate.n)
 
 
 def _distance_of_shares(apart: Estimate) -> Estimate:

@@ -78,9 +78,12 @@ class Accepted:
     ) -> Accepted:
         """Leave out the trials in which the forecast has no answer, NaN; any number but 0 is a yes."""
         known = ~np.isnan(values)
-        found = np.asarray(values)[known]
+        result = np.asarray(values)[known]
         return cls(
-            np.asarray(trials)[known], (found != 0.0).astype(np.float64) if kind is Kind.YES_NO else found, kind, texts
+            np.asarray(trials)[known],
+            (result != 0.0).astype(np.float64) if kind is Kind.YES_NO else result,
+            kind,
+            texts,
         )
 
     @classmethod
@@ -112,8 +115,8 @@ class Accepted:
         if self.kind is Kind.CATEGORY:
             share = float(np.bincount(self.values.astype(np.intp)).max() / self.m) if self.m else 0.0
             return (share * (1.0 - share)) ** 0.5 or 0.5
-        found = statistics.standard_deviation(self.sample).value
-        return 0.5 if found == 0.0 and self.sample.yes_no else found
+        value = statistics.standard_deviation(self.sample).value
+        return 0.5 if value == 0.0 and self.sample.yes_no else value
 
     def says(self, positions: tuple[float, ...]) -> Bools:
         """`(m,)` whether the answer is one of these."""
@@ -149,9 +152,9 @@ def named_shares(first: Accepted, second: Accepted) -> dict[str, tuple[float, ..
         order = [
             p for p in sorted(range(count), key=lambda p: (-often[0][p], -often[1][p])) if often[0][p] + often[1][p]
         ]
-        found = {first.texts[p] or "(empty)": (float(p),) for p in order[:_MOST_TEXTS]}
+        result = {first.texts[p] or "(empty)": (float(p),) for p in order[:_MOST_TEXTS]}
         rest = tuple(map(float, order[_MOST_TEXTS:]))
-        return found | ({"any other text": rest} if rest else {})
+        return result | ({"any other text": rest} if rest else {})
     kinds = {first.kind, second.kind}
     if Kind.CATEGORY in kinds or Kind.YES_NO not in kinds:
         return {}
@@ -188,22 +191,22 @@ class Statistic:
 
 def mean_of(run: Accepted) -> Statistic:
     """Estimate the mean; a trial pulls it by (x − mean)/m."""
-    found = statistics.mean(run.sample)
-    if found.error is None:
-        return Statistic(found, None)
-    pulls = (run.values - found.value) / run.m
-    return Statistic(found, Influence(pulls), run.values > 0.5 if run.sample.yes_no else None)
+    estimate = statistics.mean(run.sample)
+    if estimate.error is None:
+        return Statistic(estimate, None)
+    pulls = (run.values - estimate.value) / run.m
+    return Statistic(estimate, Influence(pulls), run.values > 0.5 if run.sample.yes_no else None)
 
 
 def standard_deviation_of(run: Accepted) -> Statistic:
     """Estimate the standard deviation; a trial pulls it by ((x − mean)² − s²)/(2 s m)."""
-    found = statistics.standard_deviation(run.sample)
-    if found.error is None:
-        return Statistic(found, None)
-    if found.value == 0.0:
-        return Statistic(found, Influence(np.zeros(run.m)))
-    z = (run.values - statistics.mean(run.sample).value) / found.value
-    return Statistic(found, Influence((z * z - 1.0) * (found.value / (2.0 * run.m))))
+    estimate = statistics.standard_deviation(run.sample)
+    if estimate.error is None:
+        return Statistic(estimate, None)
+    if estimate.value == 0.0:
+        return Statistic(estimate, Influence(np.zeros(run.m)))
+    z = (run.values - statistics.mean(run.sample).value) / estimate.value
+    return Statistic(estimate, Influence((z * z - 1.0) * (estimate.value / (2.0 * run.m))))
 
 
 def share_above(run: Accepted, threshold: float) -> Statistic:
@@ -214,8 +217,8 @@ def share_above(run: Accepted, threshold: float) -> Statistic:
 def _share(run: Accepted, hits: Bools) -> Statistic:
     if run.m < 2:
         return Statistic(Estimate(float(hits.mean()) if run.m else np.nan), None)
-    found = statistics.proportion(int(hits.sum()), run.m)
-    return Statistic(found, Influence((hits - float(hits.mean())) / run.m), hits)
+    estimate = statistics.proportion(int(hits.sum()), run.m)
+    return Statistic(estimate, Influence((hits - float(hits.mean())) / run.m), hits)
 
 
 def share_of(run: Accepted, positions: tuple[float, ...]) -> Statistic:
@@ -228,15 +231,15 @@ def quantile_of(run: Accepted, p: float) -> Statistic:
 
     The density f(q) is the one that gives the quantile's own standard error, which comes from order statistics.
     """
-    found = statistics.percentile(run.sample, 100.0 * p)
-    if found.error is None:
-        return Statistic(found, None)
-    below = run.values <= found.value
+    estimate = statistics.percentile(run.sample, 100.0 * p)
+    if estimate.error is None:
+        return Statistic(estimate, None)
+    below = run.values <= estimate.value
     if below.all():  # the quantile is the largest value, which many trials have: the first of them count as below
         below[np.argsort(run.values, kind="stable")[max(1, int(p * run.m)) :]] = False
     share = float(below.mean())
-    step = found.error / (run.m * share * (1.0 - share)) ** 0.5
-    return Statistic(found, Influence((share - below) * step, step))
+    step = estimate.error / (run.m * share * (1.0 - share)) ** 0.5
+    return Statistic(estimate, Influence((share - below) * step, step))
 
 
 def range_of(run: Accepted, share: float) -> Statistic:
@@ -248,8 +251,8 @@ def range_of(run: Accepted, share: float) -> Statistic:
     if low.influence is None or high.influence is None:
         return Statistic(Estimate(width, n=run.m), None)
     pulls = high.influence.pulls - low.influence.pulls
-    found = with_error(width, float(np.sum(pulls * pulls)) ** 0.5, run.m - 1.0, 0.95, run.m)
-    return Statistic(found, Influence(pulls, max(low.influence.spacing, high.influence.spacing)))
+    estimate = with_error(width, float(np.sum(pulls * pulls)) ** 0.5, run.m - 1.0, 0.95, run.m)
+    return Statistic(estimate, Influence(pulls, max(low.influence.spacing, high.influence.spacing)))
 
 
 class Pair:
@@ -294,10 +297,10 @@ class Pair:
         noise = _ROUNDING * max(abs(first.estimate.value), abs(second.estimate.value))
         value, error = (0.0 if abs(each) <= noise else each for each in (value, error))
         units = min(n, self._replicates) if self._size else n
-        found = with_error(value, error, units - 1.0, 0.95, n)
+        estimate = with_error(value, error, units - 1.0, 0.95, n)
         if first.hits is None or second.hits is None or self._same_number:
-            return found
-        return self._of_shares(found, first.hits, second.hits)
+            return estimate
+        return self._of_shares(estimate, first.hits, second.hits)
 
     @property
     def _same_number(self) -> bool:
@@ -305,23 +308,26 @@ class Pair:
         one_sided = any(rows.size for rows in self.only)
         return not (one_sided or np.any(self.apart) or self.first.is_share)
 
-    def _of_shares(self, found: Estimate, first: Bools, second: Bools) -> Estimate:
+    def _of_shares(self, estimate: Estimate, first: Bools, second: Bools) -> Estimate:
         """Return the difference of two shares, never 0 ± 0; its interval is that of two counts where nothing else
         differs.
         """
-        if found.error is None or found.interval is None:
-            return found
-        (mine, theirs), n = self.both, found.n
+        if estimate.error is None or estimate.interval is None:
+            return estimate
+        (mine, theirs), n = self.both, estimate.n
         if self._size or any(rows.size for rows in self.only):
             most = statistics.proportion(0, n).interval
             assert most is not None
             return replace(
-                found,
-                error=max(found.error, least_error(n)),
-                interval=(min(found.interval[0], found.value - most[1]), max(found.interval[1], found.value + most[1])),
+                estimate,
+                error=max(estimate.error, least_error(n)),
+                interval=(
+                    min(estimate.interval[0], estimate.value - most[1]),
+                    max(estimate.interval[1], estimate.value + most[1]),
+                ),
             )
         went, came = int(np.sum(first[mine] & ~second[theirs])), int(np.sum(second[theirs] & ~first[mine]))
-        return replace(found, error=max(found.error, least_error(n)), interval=_interval_of_counts(went, came, n))
+        return replace(estimate, error=max(estimate.error, least_error(n)), interval=_interval_of_counts(went, came, n))
 
     def error(self, first: Floats, second: Floats) -> float:
         """Return the standard error of a difference, from the pulls `(m,)` on either side."""

@@ -80,9 +80,9 @@ class Rivalry:
         """Whether the two answers agree."""
         if np.isnan(self.chance):
             return RivalVerdict.TOO_FEW
-        for limit, found in ((INCONSISTENT, RivalVerdict.CONTRADICT), (STRAINED, RivalVerdict.STRAINED)):
+        for limit, verdict in ((INCONSISTENT, RivalVerdict.CONTRADICT), (STRAINED, RivalVerdict.STRAINED)):
             if self.chance < limit and self.both >= _FEWEST[limit]:
-                return found
+                return verdict
         return RivalVerdict.AGREE if self.chance >= STRAINED else RivalVerdict.TOO_FEW
 
     @property

@@ -78,7 +78,7 @@ def judge(differences: Mapping[str, tuple[Estimate, float]]) -> Judgement:
     """
     single = {name: _judge(*each) for name, each in differences.items()}
     for verdict in (Verdict.BEYOND, Verdict.UNDECIDED, Verdict.WITHIN):
-        names = [name for name, (found, _) in single.items() if found is verdict]
+        names = [name for name, (result, _) in single.items() if result is verdict]
         if names:
             largest = max(names, key=lambda name: in_tolerances(*differences[name]))
             blind = any(_is_blind(differences[name][0]) for name in names)
@@ -166,15 +166,15 @@ class Tolerances:
             SimulationError: the tolerance stated for it is in a unit of another kind.
         """
         if (stated := self.single.get(name_key(forecast.name))) is not None:
-            found = stated.of(forecast, deviation)
-            if found is None:
+            result = stated.of(forecast, deviation)
+            if result is None:
                 message = (
                     f"the tolerance {stated.text!r} is in {stated.unit}, the forecast in {forecast.units or 'no unit'}"
                 )
                 raise SimulationError(message, where=forecast.cell, hint="state it in the forecast's own unit")
-            return found, True
-        found = next((value for each in self.general if (value := each.of(forecast, deviation)) is not None), None)
-        return (_SHARE_OF_SD * deviation, False) if found is None else (found, True)
+            return result, True
+        result = next((value for each in self.general if (value := each.of(forecast, deviation)) is not None), None)
+        return (_SHARE_OF_SD * deviation, False) if result is None else (result, True)
 
     def of_share(self, forecast: Forecast, deviation: float, chance: float | None) -> tuple[float, bool]:
         """Return the tolerance of the shares of a forecast whose answers are counted, and whether it was stated.
@@ -232,15 +232,15 @@ def read_tolerances(texts: Iterable[str], forecasts: Sequence[Forecast]) -> Tole
 
 
 def _read_stated(text: str, amount: str) -> _Stated:
-    found = _NUMBER_AND_UNIT.fullmatch(amount)
+    match = _NUMBER_AND_UNIT.fullmatch(amount)
     try:
-        value = float(found["number"]) if found else math.nan
+        value = float(match["number"]) if match else math.nan
     except ValueError:
         value = math.nan
-    if found is None or not 0.0 < value < math.inf:
+    if match is None or not 0.0 < value < math.inf:
         hint = "write a positive number, its unit if need be, and before it the forecast: 'Name=0.5 mph'"
         raise SimulationError(f"the tolerance {text!r} cannot be read", hint=hint)
-    return _Stated(text, value, found["unit"] or "")
+    return _Stated(text, value, match["unit"] or "")
 
 
 def _refuse_idle(stated: _Stated, general: Sequence[_Stated], forecasts: Sequence[Forecast]) -> None:

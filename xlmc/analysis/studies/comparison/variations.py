@@ -103,7 +103,7 @@ def names_of(text: str, known: Sequence[str], kind: str, also: Mapping[str, str]
     Raises:
         SimulationError: a pattern fits none.
     """
-    found: dict[str, None] = {}
+    result: dict[str, None] = {}
     called = {**also, **{name_key(name): name for name in known}}
     for pattern in [text] if name_key(text) in called else text.split(","):
         fitting = [name for name in known if fnmatchcase(name_key(name), name_key(pattern))]
@@ -112,8 +112,8 @@ def names_of(text: str, known: Sequence[str], kind: str, also: Mapping[str, str]
         if not fitting:
             hint = f"there are {', '.join(map(repr, known))}"
             raise SimulationError(f"no {kind} has the name {pattern.strip()!r}", hint=hint)
-        found |= dict.fromkeys(fitting)
-    return tuple(found)
+        result |= dict.fromkeys(fitting)
+    return tuple(result)
 
 
 def names_of_rows(text: str, rows: Iterable[Assumption] | Iterable[Forecast], kind: str) -> tuple[str, ...]:

@@ -88,11 +88,13 @@ def _apart_in_trials(comparison: Comparison) -> Iterator[str]:
 
 def _only_as_a_whole(each: ForecastComparison) -> str:
     """Two answers with one distribution that are not one number, as 10 + z and 10 − z."""
-    found, units = each.difference, f" {each.first.units}" if each.first.units else ""
-    if found.shares:
-        how = f"give another answer in {number_text(100 * found.typical**2, 2)} % of the trials that both accept"
+    difference, units = each.difference, f" {each.first.units}" if each.first.units else ""
+    if difference.shares:
+        how = f"give another answer in {number_text(100 * difference.typical**2, 2)} % of the trials that both accept"
     else:
-        typical, largest = (f"{tolerance_text(one, found.form)}{units}" for one in (found.typical, found.largest))
+        typical, largest = (
+            f"{tolerance_text(one, difference.form)}{units}" for one in (difference.typical, difference.largest)
+        )
         how = f"give numbers that differ by {typical} (root mean square), {largest} at most"
     return (
         f"Of {_name(each)} only the distributions agree, and the trials do not: from the same draws the books {how}. "
@@ -112,18 +114,20 @@ def _too_little(comparison: Comparison, each: ForecastComparison, books: tuple[s
 
 def _rivals(each: Sequence[ForecastComparison], books: tuple[str, str]) -> Iterator[str]:
     """Two models of one scene: which tells more, in one sentence for all answers, and one for each."""
-    found = [(one, one.rivalry) for one in each if one.rivalry is not None]
-    if len(found) > 1:
-        yield _rivals_summary([rivals for _, rivals in found], books)
-    yield from (_rival(one, rivals, books) for one, rivals in found)
+    result = [(one, one.rivalry) for one in each if one.rivalry is not None]
+    if len(result) > 1:
+        yield _rivals_summary([rivals for _, rivals in result], books)
+    yield from (_rival(one, rivals, books) for one, rivals in result)
 
 
-def _rivals_summary(found: Sequence[Rivalry], books: tuple[str, str]) -> str:
-    counts = {side: sum(rivals.sharper == side for rivals in found) for side in (0, 1)}
+def _rivals_summary(rivalries: Sequence[Rivalry], books: tuple[str, str]) -> str:
+    counts = {side: sum(rivals.sharper == side for rivals in rivalries) for side in (0, 1)}
     more = [f"{books[side]} tells more of {count}" for side, count in counts.items() if count]
-    worst = max((rivals.agreement for rivals in found), key=list(RivalVerdict).index)
+    worst = max((rivals.agreement for rivals in rivalries), key=list(RivalVerdict).index)
     tells = _join_names(more) if more else "neither tells more of any, as far as these trials say"
-    return f"Each book computes {len(found)} answers from inputs that the other has not: {tells}; {_ALL_AGREE[worst]}."
+    return (
+        f"Each book computes {len(rivalries)} answers from inputs that the other has not: {tells}; {_ALL_AGREE[worst]}."
+    )
 
 
 _ALL_AGREE = {
@@ -134,25 +138,25 @@ _ALL_AGREE = {
 }
 
 
-def _rival(each: ForecastComparison, found: Rivalry, books: tuple[str, str]) -> str:
+def _rival(each: ForecastComparison, rivalry: Rivalry, books: tuple[str, str]) -> str:
     """Which of two models tells more of an answer, and whether they agree."""
     if books[0] == books[1]:  # one book that answers twice
         books = (repr(each.first.name), repr(each.second.name))
-    spreads = (found.deviation, found.width)
+    spreads = (rivalry.deviation, rivalry.width)
     deviations, widths = (_spreads(spread, each.difference.form, each.first.units) for spread in spreads)
     share = f"{number_text(100 * each.difference.share, 3)} % range"
-    if found.sharper is not None:
-        mine, theirs = found.sharper, 1 - found.sharper
-        name, sizes = (share, widths) if found.by_range else ("standard deviation", deviations)
+    if rivalry.sharper is not None:
+        mine, theirs = rivalry.sharper, 1 - rivalry.sharper
+        name, sizes = (share, widths) if rivalry.by_range else ("standard deviation", deviations)
         tells = f"{books[mine]} tells more, with a {name} of {sizes[mine]} against {sizes[theirs]} of {books[theirs]}"
-    elif found.contrary:
+    elif rivalry.contrary:
         tells = (
             f"neither tells more: standard deviations of {_join_names(deviations)}, but {share}s of "
             f"{_join_names(widths)}; look at the percentiles"
         )
     else:
         tells = f"neither tells more, as far as these trials say: standard deviations of {_join_names(deviations)}"
-    return f"{_name(each)}: {tells}. {_AGREE[found.agreement].format(chance=_chance_text(found))}"
+    return f"{_name(each)}: {tells}. {_AGREE[rivalry.agreement].format(chance=_chance_text(rivalry))}"
 
 
 def _spreads(spread: Change, form: Form, units: str) -> list[str]:
@@ -167,10 +171,10 @@ _AGREE = {
 }
 
 
-def _chance_text(found: Rivalry) -> str:
-    if not found.chance:
-        return f"in all {count_text(found.both)} trials that both accept they differ in one direction"
-    return f"a difference as far from 0 as theirs, or farther, has a chance of {number_text(100 * found.chance, 2)} %"
+def _chance_text(rivalry: Rivalry) -> str:
+    if not rivalry.chance:
+        return f"in all {count_text(rivalry.both)} trials that both accept they differ in one direction"
+    return f"a difference as far from 0 as theirs, or farther, has a chance of {number_text(100 * rivalry.chance, 2)} %"
 
 
 _WHY = {

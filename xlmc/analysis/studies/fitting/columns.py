@@ -116,15 +116,15 @@ def fit_columns(
     """
     if len({len(cells) for cells in columns.values()}) > 1:
         raise SimulationError("The columns are of different lengths", hint="Give one value, or None, for every row")
-    found = [_column(name, cells, kind, by) for name, cells in columns.items()]
-    if all(each.fitting is None and not each.shares for each in found):
-        why = "; ".join(f"{each.name}: {each.why}" for each in found) or "there is none"
+    fits = [_column(name, cells, kind, by) for name, cells in columns.items()]
+    if all(each.fitting is None and not each.shares for each in fits):
+        why = "; ".join(f"{each.name}: {each.why}" for each in fits) or "there is none"
         raise SimulationError(f"No column can be fitted: {why}", hint="Give columns with two different values or more")
-    table = {each.name: _numbers(columns[each.name]) for each in found if each.fitting is not None}
+    table = {each.name: _numbers(columns[each.name]) for each in fits if each.fitting is not None}
     if bootstraps:
-        found = _with_bootstrap(found, table, bootstraps, seed)
+        fits = _with_bootstrap(fits, table, bootstraps, seed)
     pairs = tuple(_pair(a, b, table[a], table[b]) for a, b in combinations(table, 2))
-    return Fits(tuple(found), tuple(each for each in pairs if each is not None))
+    return Fits(tuple(fits), tuple(each for each in pairs if each is not None))
 
 
 def _numbers(cells: Cells) -> Floats:
@@ -147,14 +147,14 @@ def _column(name: str, cells: Cells, kind: str | None, by: str) -> ColumnFit:
 
 
 def _with_bootstrap(
-    found: Sequence[ColumnFit], table: Mapping[str, Floats], bootstraps: int, seed: int
+    fits: Sequence[ColumnFit], table: Mapping[str, Floats], bootstraps: int, seed: int
 ) -> list[ColumnFit]:
     """Fit the best families again to rows drawn with replacement, the same rows of all columns."""
     rows = len(next(iter(table.values())))
     rng = np.random.default_rng(seed)
     drawn = rng.integers(rows, size=(bootstraps, rows))
     again = {}
-    for each in found:
+    for each in fits:
         if each.fitting is not None:
             best = each.fitting.fits[0]
             candidate = next(c for c in KINDS[each.fitting.kind] if c.name == best.name)
@@ -173,7 +173,7 @@ def _with_bootstrap(
     kept = np.logical_and.reduce([whole for _, whole, *_ in again.values()])
     enough = kept.mean() >= _LEAST_REPEATED
     result = []
-    for each in found:
+    for each in fits:
         if each.name not in again or not enough:
             result.append(each)
             continue
@@ -189,10 +189,10 @@ def _pair(first: str, second: str, x: Floats, y: Floats) -> PairFit | None:
     if n < _FEWEST_PAIRS:
         return None
     x, y = x[both], y[both]
-    found = rank_correlation(x, y)
-    if math.isnan(found.value):
+    estimate = rank_correlation(x, y)
+    if math.isnan(estimate.value):
         return None
-    return PairFit(first, second, n, found, tuple(_copulas(_ranks(x), _ranks(y), found.value)))
+    return PairFit(first, second, n, estimate, tuple(_copulas(_ranks(x), _ranks(y), estimate.value)))
 
 
 def _ranks(x: Floats) -> Floats:
@@ -207,7 +207,7 @@ def _copulas(u: Floats, v: Floats, correlation: float) -> list[CopulaFit]:
 
     turned = correlation < 0.0
     w = 1.0 - v if turned else v
-    found = [CopulaFit("independent", {}, 0.0)]
+    fits = [CopulaFit("independent", {}, 0.0)]
 
     def best(
         density: Callable[[Floats, Floats, float], Floats], at: Floats, low: float, high: float
@@ -216,22 +216,22 @@ def _copulas(u: Floats, v: Floats, correlation: float) -> list[CopulaFit]:
         return float(result.x), 2.0 + 2.0 * float(result.fun)
 
     rho, aic = best(_gaussian, v, -0.999, 0.999)
-    found.append(CopulaFit("Gaussian", {"correlation": rho}, aic))
+    fits.append(CopulaFit("Gaussian", {"correlation": rho}, aic))
     result = minimize(
         lambda p: -float(_student(u, v, math.tanh(p[0]), 2.0 + math.exp(p[1])).sum()),
         [math.atanh(rho), math.log(6.0)],
         method="Nelder-Mead",
     )
     degrees = 2.0 + math.exp(result.x[1])
-    found.append(
+    fits.append(
         CopulaFit("t", {"correlation": math.tanh(result.x[0]), "degrees of freedom": degrees}, 4.0 + 2.0 * result.fun)
     )
     for name, density, low, high in (("Clayton", _clayton, 1e-3, 30.0), ("Gumbel", _gumbel, 1.0, 30.0)):
         theta, aic = best(density, w, low, high)
-        found.append(CopulaFit(name, {"theta": theta}, aic, turned))
+        fits.append(CopulaFit(name, {"theta": theta}, aic, turned))
     theta, aic = best(_frank, w, 1e-3, 30.0)
-    found.append(CopulaFit("Frank", {"theta": theta}, aic, turned))
-    return sorted((each for each in found if math.isfinite(each.aic)), key=lambda each: each.aic)
+    fits.append(CopulaFit("Frank", {"theta": theta}, aic, turned))
+    return sorted((each for each in fits if math.isfinite(each.aic)), key=lambda each: each.aic)
 
 
 def _gaussian(u: Floats, v: Floats, rho: float) -> Floats:

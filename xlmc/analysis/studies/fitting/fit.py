@@ -140,19 +140,19 @@ def fit(values: ArrayLike, *, kind: str | None = None, by: str = "aic", errors: 
     if kind == "counts" and not whole:
         raise SimulationError("not every value is a whole number from 0 up", hint="Fit them as continuous values")
     with np.errstate(all="ignore"):  # what is no number is refused, or ends an interval
-        found, unfit = _estimates(kind, x)
-        fits = _judged(kind, x, found, errors=errors)
+        result, unfit = _estimates(kind, x)
+        fits = _judged(kind, x, result, errors=errors)
     fits.sort(key=lambda each: (_criterion(each, by), each.aic))
     near = sorted(fits, key=lambda each: each.aic)
     rivals = [each.name for each in near if each.aic - near[0].aic < _NEAR]
     return Fitting(kind, x.size, by, tuple(fits), unfit, cautions(x.size, rivals))
 
 
-def _judged(kind: str, x: Floats, found: Sequence[tuple[Candidate, Params, float]], *, errors: bool) -> list[Fitted]:
+def _judged(kind: str, x: Floats, result: Sequence[tuple[Candidate, Params, float]], *, errors: bool) -> list[Fitted]:
     """Return the families found with their errors and their distances from the values."""
-    best = min((_aic(candidate, top) for candidate, _, top in found), default=0.0)
+    best = min((_aic(candidate, top) for candidate, _, top in result), default=0.0)
     fits = []
-    for candidate, params, top in found:
+    for candidate, params, top in result:
         sentences: tuple[Errors, str] = (None,) * len(params), "not worked out"
         if errors:
             sentences = _errors(candidate, params, x, _aic(candidate, top) - best < _IN_THE_RACE)
@@ -180,7 +180,7 @@ def _refuse_hopeless(x: Floats) -> None:
 
 def _estimates(kind: str, x: Floats) -> tuple[list[tuple[Candidate, Params, float]], dict[str, str]]:
     """Return the families with their parameters and the height of the likelihood; and why others have none."""
-    found: list[tuple[Candidate, Params, float]] = []
+    result: list[tuple[Candidate, Params, float]] = []
     unfit: dict[str, str] = {}
     for candidate in KINDS[kind]:
         try:
@@ -188,12 +188,12 @@ def _estimates(kind: str, x: Floats) -> tuple[list[tuple[Candidate, Params, floa
             refuse(not np.isfinite(params).all(), _TOO_FEW_DIGITS)
             top = candidate.log_likelihood(x, params)
             refuse(not np.isfinite(top), "its likelihood has no highest point")
-            found.append((candidate, params, top))
+            result.append((candidate, params, top))
         except Unfit as reason:
             unfit[candidate.name] = str(reason)
         except ArithmeticError:  # a spread that is 0 to the last digit, a power beyond the largest number
             unfit[candidate.name] = _TOO_FEW_DIGITS
-    return found, unfit
+    return result, unfit
 
 
 def _aic(candidate: Candidate, top: float) -> float:

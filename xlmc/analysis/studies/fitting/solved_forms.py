@@ -129,8 +129,10 @@ def _student(x: Floats) -> Params:
     spread = three_quarters - quarter
     refuse(not spread > 0, "half of the values are equal")
     z = (x - middle) / spread
-    found = maximise(lambda p: float(np.sum(_student_log(z, p[0], np.exp(p[1]), np.exp(p[2])))), [0.0, -0.4, np.log(3)])
-    midpoint, scale, freedom = float(found[0]), float(np.exp(found[1])), float(np.exp(found[2]))
+    values = maximise(
+        lambda p: float(np.sum(_student_log(z, p[0], np.exp(p[1]), np.exp(p[2])))), [0.0, -0.4, np.log(3)]
+    )
+    midpoint, scale, freedom = float(values[0]), float(np.exp(values[1])), float(np.exp(values[2]))
     refuse(freedom > _MOST_FREEDOM, "the values have no heavier tails than the normal's")
     refuse(freedom < 0.1, "its likelihood has no highest point")
     return middle + spread * midpoint, spread * scale, freedom
@@ -155,8 +157,8 @@ def _beta(x: Floats) -> Params:
     mean, variance = float(x.mean()), float(x.var())
     both = max(mean * (1 - mean) / variance - 1, 0.1)
     start = [np.log(mean * both), np.log((1 - mean) * both)]
-    found = maximise(lambda p: float(np.sum(_beta_log(x, 0.0, 1.0, np.exp(p[0]), np.exp(p[1])))), start)
-    return 0.0, 1.0, float(np.exp(found[0])), float(np.exp(found[1]))
+    values = maximise(lambda p: float(np.sum(_beta_log(x, 0.0, 1.0, np.exp(p[0]), np.exp(p[1])))), start)
+    return 0.0, 1.0, float(np.exp(values[0])), float(np.exp(values[1]))
 
 
 def _beta_log(x: Floats, low: float, high: float, alpha: float, beta: float) -> Floats:
@@ -239,17 +241,17 @@ def _draw_triangular(u: Floats, low: float, likeliest: float, high: float) -> Fl
 
 
 def _triangular_errors(x: Floats, params: Params) -> Errors:
-    random, found = np.random.default_rng(_BOOTSTRAP_SEED), []
+    random, result = np.random.default_rng(_BOOTSTRAP_SEED), []
     for _ in range(_BOOTSTRAP_SAMPLES):
         sample = np.sort(_draw_triangular(random.random(x.size), *params))
         try:
             low, high = _triangular_ends(sample, 1e-2)
         except Unfit:
             continue
-        found.append((low, _triangular_likeliest(sample, low, high)[0], high))
-    if len(found) < _BOOTSTRAP_SAMPLES / 2:
+        result.append((low, _triangular_likeliest(sample, low, high)[0], high))
+    if len(result) < _BOOTSTRAP_SAMPLES / 2:
         return None, None, None
-    return tuple(float(error) for error in np.std(found, axis=0, ddof=1))
+    return tuple(float(error) for error in np.std(result, axis=0, ddof=1))
 
 
 TRIANGULAR = Candidate(
@@ -287,9 +289,9 @@ def maximise(
     point = np.array(start, dtype=float)
     for _ in range(2):
         options = {"xatol": tolerance, "fatol": tolerance / 10 * (1 + abs(loss(point))), "maxfev": most}
-        found = minimize(loss, point, method="Nelder-Mead", options=options)
-        point = np.asarray(found.x)
-    if not found.success or not found.fun < 1e300:
+        result = minimize(loss, point, method="Nelder-Mead", options=options)
+        point = np.asarray(result.x)
+    if not result.success or not result.fun < 1e300:
         raise Unfit("its likelihood has no highest point")
     return point
 

@@ -88,13 +88,13 @@ def extremes_of(
     """Return the extremes of every forecast `(m,)` over accepted trials `(m,)`; none of a forecast that is nowhere a
     number.
     """
-    found = []
+    extremes = []
     for name, values in forecasts.items():
         if np.isnan(values).all():
             continue
         for end, row in (("least", np.nanargmin(values)), ("most", np.nanargmax(values))):
-            found.append(Extreme(name, end, float(values[row]), seed, plan, int(trials[row])))
-    return tuple(found)
+            extremes.append(Extreme(name, end, float(values[row]), seed, plan, int(trials[row])))
+    return tuple(extremes)
 
 
 @dataclass(frozen=True, slots=True)

@@ -162,9 +162,9 @@ def reference_of(model: CompiledModel, trials: int, sampling: str, engine: str, 
         engine=engine,
         seed=seed,
         seconds=time.perf_counter() - started,
-        answers={name: found[0] for name, found in numbers.items()},
-        errors={name: found[1] for name, found in numbers.items()},
-        single={name: found[2] for name, found in numbers.items()},
+        answers={name: result[0] for name, result in numbers.items()},
+        errors={name: results[1] for name, results in numbers.items()},
+        single={name: answer[2] for name, answer in numbers.items()},
         widths={f.name: _width(run[f.name].sample, numbers[f.name][0]) for f in model.forecasts},
         acceptance=run.acceptance,
         warnings=tuple(run.warnings),
@@ -186,10 +186,10 @@ def unfiltered_of(model: CompiledModel, reference: Reference) -> Reference | Non
     free = CompiledModel(model.workbook, replace(model.definitions, filters=(), checks=()), model.path)
     trials = min(reference.trials, _UNFILTERED)
     try:
-        found = reference_of(free, trials, "mc", reference.engine, reference.seed)
+        result = reference_of(free, trials, "mc", reference.engine, reference.seed)
     except SimulationError:
         return None
-    return None if found.warnings or found.heavy else found
+    return None if result.warnings or result.heavy else result
 
 
 def _thinned(ordered: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -209,10 +209,10 @@ def _width(sample: Sample, answer: Answer) -> float:
 
 def _lost(x: NDArray[np.float64]) -> tuple[str, ...]:
     """Return the statistics of a forecast that do not converge."""
-    found = heavy_tail(x)
-    if found is None:
+    pair = heavy_tail(x)
+    if pair is None:
         return ()
-    index, error = found
+    index, error = pair
     return ("mean", "sd") if index - 2 * error <= 1.0 else ("sd",)
 
 

@@ -45,9 +45,9 @@ class Corners:
         corners, remarks = _corners(len(reaching), seed)
         points = np.tile((box.low + box.high) / 2.0, (len(corners), 1))
         points[:, reaching] = np.where(corners, box.high[reaching], box.low[reaching])
-        found = evaluate(points).forecasts
-        answers = {f.name: _bounds(column) for f, column in zip(model.forecasts, found.T, strict=True)}
-        lost = int(np.count_nonzero(np.isnan(found).any(axis=1)))
+        values = evaluate(points).forecasts
+        answers = {f.name: _bounds(column) for f, column in zip(model.forecasts, values.T, strict=True)}
+        lost = int(np.count_nonzero(np.isnan(values).any(axis=1)))
         if lost:
             remarks = (*remarks, f"left out: {counted_text(lost, 'corner')} in which a forecast is not a number")
         return MethodResult(time.perf_counter() - started, evaluate.count, answers, remarks=(*remarks, *box.remarks))

@@ -78,19 +78,19 @@ def rms_of(errors: ArrayLike, reference: float = 0.0) -> Rms:
     >>> rms_of([3.0, -4.0, 1.0, float("nan")]).value
     3.605551275463989
     """
-    found = np.asarray(errors, np.float64)
-    found = found[~np.isnan(found)]
+    values = np.asarray(errors, np.float64)
+    values = values[~np.isnan(values)]
     known = float(np.nan_to_num(reference))
-    if not found.size:
+    if not values.size:
         return Rms(np.nan, np.nan, np.nan, np.nan, 0)
-    bias = float(np.mean(found))
-    if found.size == 1:
+    bias = float(np.mean(values))
+    if values.size == 1:
         return Rms(abs(bias), known, bias, np.nan, 1)
-    spread = float(np.std(found, ddof=1))
-    chance = spread**2 / found.size + known**2
+    spread = float(np.std(values, ddof=1))
+    chance = spread**2 / values.size + known**2
     more = max(bias**2 - chance, 0.0) if bias**2 > _BEYOND_CHANCE**2 * chance else 0.0
     value = float(np.sqrt(spread**2 + more))
-    return Rms(value, value / float(np.sqrt(2.0 * (found.size - 1))), bias, spread, int(found.size))
+    return Rms(value, value / float(np.sqrt(2.0 * (values.size - 1))), bias, spread, int(values.size))
 
 
 def slope_of(x: Sequence[float], y: Sequence[float], weights: Sequence[float] | None = None) -> float:
@@ -191,12 +191,12 @@ def in_order(lengths: Sequence[Runs]) -> tuple[Runs, ...]:
     A longer run does all that a shorter one does. Where its fastest took less time, every shorter run was held up by
     something else that the machine did, and would take no longer than it.
     """
-    found: list[Runs] = []
+    result: list[Runs] = []
     least = np.inf
     for runs in reversed(lengths):
         least = min(least, float(np.nan_to_num(runs.seconds, nan=np.inf)))
-        found.append(replace(runs, seconds=least if np.isfinite(least) else np.nan))
-    return tuple(reversed(found))
+        result.append(replace(runs, seconds=least if np.isfinite(least) else np.nan))
+    return tuple(reversed(result))
 
 
 def runs_of(budget: int, results: Sequence[MethodResult], reference: Reference) -> Runs:
@@ -228,7 +228,7 @@ def runs_of(budget: int, results: Sequence[MethodResult], reference: Reference) 
 
 
 def _shares(errors: Mapping[tuple[str, str], Rms], reference: Reference) -> dict[str, float]:
-    found = {}
+    result = {}
     for statistic in STATISTICS:
         parts = [
             errors[name, statistic].value / width
@@ -236,5 +236,5 @@ def _shares(errors: Mapping[tuple[str, str], Rms], reference: Reference) -> dict
             if width > 0.0 and reference.asks(name, statistic)
         ]
         known = [part for part in parts if np.isfinite(part)]
-        found[statistic] = float(np.sqrt(np.mean(np.square(known)))) if known else np.nan
-    return found
+        result[statistic] = float(np.sqrt(np.mean(np.square(known)))) if known else np.nan
+    return result

@@ -42,9 +42,9 @@ class WorstCase:
         started = time.perf_counter()
         expansion, box = expansion_of(model, seed, 1), box_of(model, seed)
         answers = {}
-        for name, found in expansion.forecasts.items():
-            to_low, to_high = (found.gradient[0] * (end - expansion.moments.mean) for end in (box.low, box.high))
-            value = float(found.value[0])
+        for name, derivative in expansion.forecasts.items():
+            to_low, to_high = (derivative.gradient[0] * (end - expansion.moments.mean) for end in (box.low, box.high))
+            value = float(derivative.value[0])
             down, up = np.minimum(to_low, to_high).sum(), np.maximum(to_low, to_high).sum()
             answers[name] = Answer(least=value + float(down), most=value + float(up))
         return MethodResult(time.perf_counter() - started, 1, answers, remarks=(*expansion.remarks, *box.remarks))
@@ -67,8 +67,8 @@ class FirstOrder:
         expansion = expansion_of(model, seed, 1)
         answers = {}
         for forecast in model.forecasts:
-            found = expansion.forecasts[forecast.name]
-            mean, slope = float(found.value[0]), found.gradient[0]
+            derivative = expansion.forecasts[forecast.name]
+            mean, slope = float(derivative.value[0]), derivative.gradient[0]
             sd = float(np.sqrt(slope @ expansion.moments.covariance @ slope))
             reach = sd * float(ndtri((1.0 + forecast.central) / 2.0))
             answers[forecast.name] = Answer(mean, sd, mean - reach, mean + reach)
@@ -89,32 +89,32 @@ class SecondOrder:
         started = time.perf_counter()
         expansion = expansion_of(model, seed, 2)
         moments = expansion.moments
-        found = {name: each for name, each in expansion.forecasts.items() if not np.isnan(_bend(each)).any()}
-        values: dict[str, list[Floats]] = {name: [] for name in found}
+        result = {name: each for name, each in expansion.forecasts.items() if not np.isnan(_bend(each)).any()}
+        values: dict[str, list[Floats]] = {name: [] for name in result}
         for block in draw_assumptions(model, seed):
-            for name, each in found.items():
+            for name, each in result.items():
                 values[name].append(_polynomial(each, block - moments.mean))
         answers = {forecast.name: Answer() for forecast in model.forecasts}
         for forecast in model.forecasts:
-            if forecast.name in found:
-                each = found[forecast.name]
+            if forecast.name in result:
+                each = result[forecast.name]
                 mean = float(each.value[0]) + 0.5 * float(np.sum(_bend(each) * moments.covariance))
                 rest = answer_of(np.concatenate(values[forecast.name]), None, forecast.central)
                 answers[forecast.name] = Answer(mean, rest.sd, rest.low, rest.high)
         return MethodResult(time.perf_counter() - started, 1, answers, remarks=expansion.remarks)
 
 
-def _polynomial(found: Derivative, away: Floats) -> Floats:
+def _polynomial(derivative: Derivative, away: Floats) -> Floats:
     """Return the quadratic polynomial at points `(n, k)` counted from the means, `(n,)`; most of many assumptions have
     no part in it.
     """
-    slope, bend = found.gradient[0], _bend(found)
+    slope, bend = derivative.gradient[0], _bend(derivative)
     reaching = np.flatnonzero((slope != 0.0) | (bend != 0.0).any(axis=0))
     near = np.ascontiguousarray(away[:, reaching])
     bent = 0.5 * np.einsum("nk,nk->n", near @ bend[np.ix_(reaching, reaching)], near)
-    return np.asarray(float(found.value[0]) + near @ slope[reaching] + bent)
+    return np.asarray(float(derivative.value[0]) + near @ slope[reaching] + bent)
 
 
-def _bend(found: Derivative) -> Floats:
-    assert found.hessian is not None  # second derivatives were asked for
-    return np.asarray(found.hessian[0])
+def _bend(derivative: Derivative) -> Floats:
+    assert derivative.hessian is not None  # second derivatives were asked for
+    return np.asarray(derivative.hessian[0])

@@ -50,17 +50,17 @@ def expansion_of(model: CompiledModel, seed: int, order: int) -> Expansion:
     """
     moments = _moments_of(model, seed)
     names = [a.name for a in model.live]
-    found = derivatives(model, dict(zip(names, moments.mean, strict=True)), order=order)
-    remarks = ("about the means of the assumptions", *moments.remarks, *_remarks(found))
-    return Expansion(moments, found.forecasts, remarks)
+    result = derivatives(model, dict(zip(names, moments.mean, strict=True)), order=order)
+    remarks = ("about the means of the assumptions", *moments.remarks, *_remarks(result))
+    return Expansion(moments, result.forecasts, remarks)
 
 
-def _remarks(found: Derivatives) -> list[str]:
-    sentences = [f"no derivative: {each.why} ({each.function} in {each.cell})" for each in found.undefined]
-    if found.numerical:
-        names = ", ".join(f"{each.function} in {each.cell}" for each in found.numerical)
+def _remarks(result: Derivatives) -> list[str]:
+    sentences = [f"no derivative: {each.why} ({each.function} in {each.cell})" for each in result.undefined]
+    if result.numerical:
+        names = ", ".join(f"{each.function} in {each.cell}" for each in result.numerical)
         sentences.append(f"derivatives from differences, because there is no rule for {names}")
-    lost = [name for name, each in found.forecasts.items() if np.isnan(each.gradient).any()]
+    lost = [name for name, each in result.forecasts.items() if np.isnan(each.gradient).any()]
     if lost:
         sentences.append(f"no answer for {', '.join(lost)}: a derivative is missing")
     return sentences
@@ -87,10 +87,10 @@ def _moments_of(model: CompiledModel, seed: int) -> Moments:
     Raises:
         SimulationError: a mean or a standard deviation is infinite.
     """
-    found = np.array([_of_draw(model.draws[a.name]) for a in model.live]).reshape(-1, 2)
-    varying = [index for index, (mean, _) in enumerate(found) if np.isnan(mean)]
+    values = np.array([_of_draw(model.draws[a.name]) for a in model.live]).reshape(-1, 2)
+    varying = [index for index, (mean, _) in enumerate(values) if np.isnan(mean)]
     for index, assumption in enumerate(model.live):
-        if index not in varying and not np.isfinite(found[index]).all():
+        if index not in varying and not np.isfinite(values[index]).all():
             message = f"{assumption.name!r} has no finite mean and standard deviation to start from"
             raise SimulationError(message, hint="give it cutoffs, or use a method that draws")
     correlations = np.eye(len(model.live))
@@ -98,14 +98,14 @@ def _moments_of(model: CompiledModel, seed: int) -> Moments:
     if varying or model.groups:
         draws = np.concatenate([*draw_assumptions(model, seed)])
         for index in varying:
-            found[index] = np.nanmean(draws[:, index]), np.nanvar(draws[:, index])
+            values[index] = np.nanmean(draws[:, index]), np.nanvar(draws[:, index])
         correlations = _correlations(model, draws, varying)
         remarks.append(f"correlations are those of {count_text(len(draws))} draws")
         if varying:
             names = ", ".join(model.live[index].name for index in varying)
             remarks.append(f"parameters vary, so mean and SD are those of {count_text(len(draws))} draws: {names}")
-    sd = np.sqrt(found[:, 1])
-    return Moments(found[:, 0], correlations * np.outer(sd, sd), tuple(remarks))
+    sd = np.sqrt(values[:, 1])
+    return Moments(values[:, 0], correlations * np.outer(sd, sd), tuple(remarks))
 
 
 def draw_assumptions(model: CompiledModel, seed: int) -> Iterator[Floats]:
@@ -139,6 +139,6 @@ def _correlations(model: CompiledModel, draws: Floats, varying: list[int]) -> Fl
         indices = [names.index(name) for name in group.names]
         related[np.ix_(indices, indices)] = True
     related[varying, :] = related[:, varying] = True
-    found = np.where(related, every, 0.0)
-    np.fill_diagonal(found, 1.0)
-    return found
+    values = np.where(related, every, 0.0)
+    np.fill_diagonal(values, 1.0)
+    return values

@@ -83,13 +83,13 @@ def _learned(model: CompiledModel, trials: int, seed: int) -> dict[str, Floats]:
     if not run.accepted:
         message = f"the filters accept none of {count_text(trials)} trials, so there is nothing to learn a grid from"
         raise SimulationError(message, hint="run more trials, or see whether the filters contradict the assumptions")
-    found = {}
+    result = {}
     for name, stream in ((a.name, a.stream or a.name) for a in model.live):
         uniforms = np.empty(trials)
         Stream(seed, stream).uniforms(0, uniforms)
         counts = np.bincount((uniforms[run.trial_index] * BINS).astype(np.intp), minlength=BINS)
-        found[name] = _density(counts.astype(np.float64))
-    return found
+        result[name] = _density(counts.astype(np.float64))
+    return result
 
 
 def _density(counts: Floats) -> Floats:
@@ -110,10 +110,10 @@ def _weighted(
     runner = model_runner(model, program, "numpy", seed, block, plan)
     weights, columns, accepted = [], [], []
     for start in range(0, trials, block):
-        found = runner.run(Task(start, min(block, trials - start), prior=False, inputs=False))
-        weights.append(plan.weights[found.accepted - start])
-        columns.append(found.forecasts)
-        accepted.append(found.accepted)
+        result = runner.run(Task(start, min(block, trials - start), prior=False, inputs=False))
+        weights.append(plan.weights[result.accepted - start])
+        columns.append(result.forecasts)
+        accepted.append(result.accepted)
     forecasts = [np.concatenate(parts) for parts in zip(*columns, strict=True)]
     named = {f.name: column for f, column in zip(model.forecasts, forecasts, strict=True)}
     return np.concatenate(weights), forecasts, extremes_of(named, np.concatenate(accepted), seed, plan)

@@ -109,10 +109,10 @@ def _law_of_quantile(study: Study, lengths: Sequence[Runs], kind: Kind) -> Law |
         return None
     tolerance = study.tolerance(kind[0])
     forecast = next(each for each in study.model.forecasts if each.name == kind[0])
-    found = study.reference.quantile_need(forecast, kind[1], tolerance)
-    if found is None:
+    need = study.reference.quantile_need(forecast, kind[1], tolerance)
+    if need is None:
         return None
-    return _law_that_meets(found.trials / study.reference.acceptance.value, tolerance, lengths[0].budget, found.error)
+    return _law_that_meets(need.trials / study.reference.acceptance.value, tolerance, lengths[0].budget, need.error)
 
 
 def _law_that_meets(trials: float, tolerance: float, least: float, error: float) -> Law:
@@ -171,12 +171,12 @@ def _trials_between(budgets: Floats, reach: Floats) -> float:
 
 def _slope(budgets: Floats, values: Floats, weights: Floats) -> float:
     """−1/2, unless the line is steeper by more than chance. A value of n runs has the variance 1/(2(n − 1)) in logs."""
-    found = slope_of(budgets.tolist(), values.tolist(), weights.tolist())
-    if np.isnan(found):
+    value = slope_of(budgets.tolist(), values.tolist(), weights.tolist())
+    if np.isnan(value):
         return _HALF
     across = np.log(budgets)
     error = float(np.sum(weights * (across - np.average(across, weights=weights)) ** 2)) ** -0.5
-    return max(found, _STEEPEST) if found < _HALF - _CLEARLY * error else _HALF
+    return max(value, _STEEPEST) if value < _HALF - _CLEARLY * error else _HALF
 
 
 def _law_with_floor(study: Study, lengths: Sequence[Runs], kind: Kind, theory: float) -> Law:
@@ -221,9 +221,9 @@ def _known_errors(lengths: Sequence[Runs], kind: Kind) -> list[tuple[Runs, Rms]]
 
 def _exact_from(lengths: Sequence[Runs], kind: Kind) -> float | None:
     """Trials from which on no run was off at all, as those of whole numbers; None if the longest ones are."""
-    found = None
+    value = None
     for runs in reversed(lengths):
         if runs.errors[kind].value != 0.0:
             break
-        found = float(runs.budget)
-    return found
+        value = float(runs.budget)
+    return value

@@ -111,26 +111,26 @@ def need(study: Study, curve: Curve) -> Need:
     worst = Need(0.0, 0.0, "", "mean", 0.0)
     for kind in _asked_kinds(study):
         tolerance = study.tolerance(kind[0])
-        found = law(study, curve, kind)
-        reaches = _verdict(found.floor_low, found.floor_high, tolerance)
-        trials = np.inf if reaches == "no" else found.trials(tolerance)
+        result = law(study, curve, kind)
+        reaches = _verdict(result.floor_low, result.floor_high, tolerance)
+        trials = np.inf if reaches == "no" else result.trials(tolerance)
         rank = (("yes", "unknown", "no").index(reaches), trials)
         if rank > (("yes", "unknown", "no").index(worst.reaches), worst.trials) or not worst.forecast:
-            floor = found.floor / tolerance if tolerance > 0.0 else np.inf
-            worst = Need(trials, seconds_of(curve, trials), *kind, trials / longest, reaches, floor, found.error)
+            floor = result.floor / tolerance if tolerance > 0.0 else np.inf
+            worst = Need(trials, seconds_of(curve, trials), *kind, trials / longest, reaches, floor, result.error)
     if worst.reaches == "yes" and not np.isfinite(worst.trials):
         worst = replace(worst, reaches="unknown")
     return _agreeing(study, curve, worst)
 
 
-def _agreeing(study: Study, curve: Curve, found: Need) -> Need:
+def _agreeing(study: Study, curve: Curve, result: Need) -> Need:
     """Return the need of an engine, which is off in every run by what its arithmetic rounds differently."""
     for name in study.varying:
         off = curve.apart * study.reference.answers[name].sd
         tolerance = study.tolerance(name)
         if off > tolerance:
             return Need(np.inf, np.inf, name, "mean", np.inf, "no", off / tolerance)
-    return found
+    return result
 
 
 def _verdict(low: float, high: float, tolerance: float) -> Verdict:
@@ -223,7 +223,7 @@ def choice(study: Study, accuracy: tuple[str, float, bool] | None = None) -> Cho
     """
     asked = study if accuracy is None else replace(study, accuracy=accuracy)
     needs = {curve: need(asked, curve) for curve in (*study.curves, *study.engines)}
-    usable = sorted((curve for curve, found in needs.items() if found.usable), key=lambda curve: needs[curve].seconds)
+    usable = sorted((curve for curve, result in needs.items() if result.usable), key=lambda curve: needs[curve].seconds)
     if not usable:
         return Choice(None, needs, ())
     cheapest = tied({curve: needs[curve].seconds for curve in usable})

@@ -59,11 +59,11 @@ def in_step(
     [4, 4]
     """
     round_ = _Round(len(searches), answer)
-    found: dict[int, Found] = {}
+    result: dict[int, Found] = {}
 
     def run(index: int) -> None:
         try:
-            found[index] = searches[index](lambda question: round_.ask(index, question))
+            result[index] = searches[index](lambda question: round_.ask(index, question))
         except BaseException as error:
             round_.fail(error)
         finally:
@@ -76,7 +76,7 @@ def in_step(
         thread.join()
     if round_.error is not None:
         raise round_.error
-    return [found[index] for index in range(len(searches))]
+    return [result[index] for index in range(len(searches))]
 
 
 class _Round(Generic[Asked, Answered]):
@@ -199,10 +199,10 @@ def widen_bounds(
     for (name, end), each in _outside(bounds, extremes).items():
         drawn = model.sampler(each.seed, 1, plan=each.plan).draw(each.trial)
         point = np.column_stack([drawn[assumption] for assumption in names])
-        found = evaluate(point)
-        if not found.accepted[0]:
+        outcomes = evaluate(point)
+        if not outcomes.accepted[0]:
             continue
-        values = {name: found.forecasts[:, columns.index(name)]}
+        values = {name: outcomes.forecasts[:, columns.index(name)]}
         wider, where = _Search(model, box, point).answers(values)
         answers[name] = replace(answers.get(name, Answer()), **{end: getattr(wider[name], end)})
         ends[name, end] = where[name, end]
@@ -211,15 +211,15 @@ def widen_bounds(
 
 def _outside(bounds: Mapping[str, tuple[float, float]], extremes: Iterable[Extreme]) -> dict[End, Extreme]:
     """Return the outermost trial beyond each end."""
-    found: dict[End, Extreme] = {}
+    result: dict[End, Extreme] = {}
     for each in extremes:
         if each.forecast not in bounds:
             continue
         key, sign = (each.forecast, each.end), 1.0 if each.end == "least" else -1.0
-        bound = found[key].value if key in found else bounds[each.forecast][each.end == "most"]
+        bound = result[key].value if key in result else bounds[each.forecast][each.end == "most"]
         if sign * each.value < sign * bound:
-            found[key] = each
-    return found
+            result[key] = each
+    return result
 
 
 class _Search:
@@ -241,17 +241,19 @@ class _Search:
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        found = [
+        result = [
             f"{_STARTS} searches for each end, with exact derivatives, from accepted trials of a pilot run",
             "each end is the forecast of a point that the workbook accepts; --json and the files of -o name it",
         ]
         unseen = [name for name, limits in self._filters.items() if any(at is None for _, at in limits) or not limits]
         if unseen:
-            found.append(f"checked, but not followed by the search: {', '.join(unseen)}")
+            result.append(f"checked, but not followed by the search: {', '.join(unseen)}")
         if self._whole.any():
             whole_names = ", ".join(name for name, whole in zip(self._names, self._whole, strict=True) if whole)
-            found.append(f"held at their values in the starting trials, because they are not continuous: {whole_names}")
-        return (*found, *self._box.remarks)
+            result.append(
+                f"held at their values in the starting trials, because they are not continuous: {whole_names}"
+            )
+        return (*result, *self._box.remarks)
 
     @cached_property
     def _whole(self) -> Bools:
@@ -268,10 +270,10 @@ class _Search:
         ]
         searches = [partial(self._search, name, sign, self._accepted[trial]) for name, sign, trial in ends]
         best: dict[End, tuple[float, Floats]] = {}
-        for (name, sign, trial), found in zip(ends, in_step(searches, self._derivatives), strict=True):
+        for (name, sign, trial), result in zip(ends, in_step(searches, self._derivatives), strict=True):
             end = name, "least" if sign > 0.0 else "most"
             sampled = float(forecasts[name][trial]), self._accepted[trial]
-            candidates = [each for each in (best.get(end), sampled, found) if each is not None]
+            candidates = [each for each in (best.get(end), sampled, result) if each is not None]
             best[end] = min(candidates, key=lambda each: sign * each[0])
         answers = {name: Answer() for name in forecasts}
         for (name, which), (value, _) in best.items():
@@ -294,14 +296,14 @@ class _Search:
             return factor * value, factor * slope
 
         end = self._minimum(goal, at, self._constraints(known, 0.0))
-        found = self._if_accepted(name, end)
+        result = self._if_accepted(name, end)
         for margin in _MARGINS:
-            if found is not None:
-                return found
+            if result is not None:
+                return result
             # The optimiser keeps to constraints but for rounding: on to the nearest point that is clear of them.
             near = partial(_distance, end)
-            found = self._if_accepted(name, self._minimum(near, end, self._constraints(known, margin)))
-        return found
+            result = self._if_accepted(name, self._minimum(near, end, self._constraints(known, margin)))
+        return result
 
     def _minimum(self, goal: Goal, start: Floats, constraints: list[dict[str, Any]]) -> Floats:
         from scipy.optimize import minimize
@@ -319,9 +321,9 @@ class _Search:
         """Return the forecast at a point, and the point in the assumptions' units, if the workbook accepts it."""
         at = self._low + point * self._width
         with self._one_at_a_time:
-            found = self._evaluate(at[None, :])
-        value = float(found.forecasts[0, [f.name for f in self._model.forecasts].index(name)])
-        return (value, at) if found.accepted[0] and not np.isnan(value) else None
+            outcomes = self._evaluate(at[None, :])
+        value = float(outcomes.forecasts[0, [f.name for f in self._model.forecasts].index(name)])
+        return (value, at) if outcomes.accepted[0] and not np.isnan(value) else None
 
     def _constraints(self, known: _Known, margin: float) -> list[dict[str, Any]]:
         return [
@@ -334,7 +336,7 @@ class _Search:
     def _derivatives(self, points: list[Floats]) -> list[_Point]:
         """Values and slopes at points of as many searches."""
         at = self._low + np.array(points) * self._width
-        found = derivatives(self._model, dict(zip(self._names, at.T, strict=True)))
+        result = derivatives(self._model, dict(zip(self._names, at.T, strict=True)))
         self._derived += len(points)
 
         def one(each: Derivative, index: int) -> tuple[float, Floats]:
@@ -342,8 +344,8 @@ class _Search:
 
         return [
             _Point(
-                {name: one(each, index) for name, each in found.forecasts.items()},
-                {name: one(each, index) for name, each in found.filters.items()},
+                {name: one(each, index) for name, each in result.forecasts.items()},
+                {name: one(each, index) for name, each in result.filters.items()},
             )
             for index in range(len(points))
         ]

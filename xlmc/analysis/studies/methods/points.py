@@ -60,9 +60,9 @@ def box_of(model: CompiledModel, seed: int) -> Box:
     ends = np.empty((len(model.live), 2))
     for index, assumption in enumerate(model.live):
         draw = model.draws[assumption.name]
-        found = draw.ends
-        if found is not None:
-            ends[index] = found
+        pair = draw.ends
+        if pair is not None:
+            ends[index] = pair
         elif draw.fixed:
             ends[index] = _cut(draw)
             cut.append(assumption.name)
@@ -88,19 +88,19 @@ def _cut(draw: Draw) -> tuple[float, float]:
 
 
 def _remarks(model: CompiledModel, cut: list[str], varying: list[int]) -> list[str]:
-    found = []
+    result = []
     if cut:
         names = ", ".join(cut)
-        found.append(
+        result.append(
             f"unbounded ends are cut at the {number_text(100 * _CUT)} and "
             f"{number_text(100 - 100 * _CUT)} % quantiles: {names}"
         )
     if varying:
         names = ", ".join(model.live[index].name for index in varying)
-        found.append(f"parameters vary, so the extremes of {count_text(_DRAWN)} draws stand for the ends: {names}")
+        result.append(f"parameters vary, so the extremes of {count_text(_DRAWN)} draws stand for the ends: {names}")
     if model.groups:
-        found.append("correlations are not seen: any corner counts as possible")
-    return found
+        result.append("correlations are not seen: any corner counts as possible")
+    return result
 
 
 @dataclass(frozen=True, slots=True, eq=False)

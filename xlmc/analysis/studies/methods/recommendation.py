@@ -68,12 +68,12 @@ def _paragraphs(study: Study) -> list[str]:
             if numbers
             else "No forecast is a number in more than one trial: there is nothing to compute with any method."
         ]
-    found = choice(study)
+    result = choice(study)
     once = [(curve, worst_error(study, curve)) for curve in study.once if curve.answers]
-    verdict, *others = _drawing_text(study, found)
+    verdict, *others = _drawing_text(study, result)
     sentences = [verdict, _accuracy_text(study), *_heavy_text(study), *others, *_once_text(once)]
-    sentences += [_never_text(study, curve, each) for curve, each in found.needs.items() if each.reaches == "no"]
-    sentences += [_unknown_text(curve, each) for curve, each in found.needs.items() if each.reaches == "unknown"]
+    sentences += [_never_text(study, curve, each) for curve, each in result.needs.items() if each.reaches == "no"]
+    sentences += [_unknown_text(curve, each) for curve, each in result.needs.items() if each.reaches == "unknown"]
     sentences += [_missed_text(study, curve, each) for curve, each in once if each.reaches == "no"]
     sentences += [_undecided_text(study, curve, each) for curve, each in once if each.reaches == "unknown"]
     sentences += _bounds_text(study)
@@ -111,14 +111,14 @@ def _heavy_text(study: Study) -> list[str]:
     ]
 
 
-def _drawing_text(study: Study, found: Choice) -> list[str]:
-    if found.chosen is None:
+def _drawing_text(study: Study, result: Choice) -> list[str]:
+    if result.chosen is None:
         return ["No method that draws reaches this accuracy: ask for an accuracy above 0."]
-    chosen, wanted = found.chosen, found.needs[found.chosen]
+    chosen, wanted = result.chosen, result.needs[result.chosen]
     sentences = (
         f"Recommended: {chosen.method.name}, about {trials_text(wanted.trials)} trials, "
         f"{seconds_text(wanted.seconds)}; the {statistic_words(wanted.statistic)} of {wanted.forecast} needs the most. "
-        f"{_saving(found)}"
+        f"{_saving(result)}"
     )
     if wanted.beyond > _FAR:
         sentences += (
@@ -131,32 +131,32 @@ def _drawing_text(study: Study, found: Choice) -> list[str]:
             f" The number of trials is computed, and known to a factor of {number_text(np.exp(2.0 * wanted.error), 2)}."
         )
     others = sorted(
-        (curve for curve, each in found.needs.items() if curve is not chosen and each.usable),
-        key=lambda curve: found.needs[curve].seconds,
+        (curve for curve, each in result.needs.items() if curve is not chosen and each.usable),
+        key=lambda curve: result.needs[curve].seconds,
     )
     rest = "; ".join(
-        f"{curve.method.name} {trials_text(found.needs[curve].trials)} trials, "
-        f"{seconds_text(found.needs[curve].seconds)}"
+        f"{curve.method.name} {trials_text(result.needs[curve].trials)} trials, "
+        f"{seconds_text(result.needs[curve].seconds)}"
         for curve in others
     )
     return [f"{sentences} {_command(study, chosen, wanted)}", *([f"The others would need: {rest}."] if rest else [])]
 
 
-def _saving(found: Choice) -> str:
+def _saving(result: Choice) -> str:
     """Return what the clock alone would choose."""
-    assert found.chosen is not None
-    least = found.cheapest[0]
-    if found.chosen in found.cheapest:
-        saved = found.needs[found.chosen].seconds - found.needs[least].seconds
+    assert result.chosen is not None
+    least = result.cheapest[0]
+    if result.chosen in result.cheapest:
+        saved = result.needs[result.chosen].seconds - result.needs[least].seconds
         if saved <= NO_TIME:
             return "No other method saves a tenth of a second."
-        return f"{_names([c for c in found.cheapest if c is not found.chosen])} take the same time within 20 %."
-    tied = [curve for curve in found.cheapest if curve is not least]
-    sentences = f"By the clock alone {least.method.name} is cheapest, {seconds_text(found.needs[least].seconds)}"
+        return f"{_names([c for c in result.cheapest if c is not result.chosen])} take the same time within 20 %."
+    tied = [curve for curve in result.cheapest if curve is not least]
+    sentences = f"By the clock alone {least.method.name} is cheapest, {seconds_text(result.needs[least].seconds)}"
     if tied:
         sentences += f", and {_names(tied)} take the same time within 20 % or a tenth of a second"
-    saved = found.needs[found.chosen].seconds - found.needs[least].seconds
-    return f"{sentences}: it saves {seconds_text(saved)}{_price(least, found.chosen)}."
+    saved = result.needs[result.chosen].seconds - result.needs[least].seconds
+    return f"{sentences}: it saves {seconds_text(saved)}{_price(least, result.chosen)}."
 
 
 def _price(cheap: Curve, chosen: Curve) -> str:
@@ -205,7 +205,7 @@ def _upwards(trials: float) -> int:
 
 
 def _once_text(once: Sequence[tuple[Curve, WorstError]]) -> list[str]:
-    enough = [curve for curve, found in once if found.reaches == "yes"]
+    enough = [curve for curve, result in once if result.reaches == "yes"]
     if not enough:
         return []
     verbs = ("is", "needs") if len(enough) == 1 else ("are", "need")
@@ -215,35 +215,36 @@ def _once_text(once: Sequence[tuple[Curve, WorstError]]) -> list[str]:
     return [sentences]
 
 
-def _never_text(study: Study, curve: Curve, found: Need) -> str:
-    off = study.amount(found.forecast, found.floor * study.tolerance(found.forecast))
+def _never_text(study: Study, curve: Curve, need: Need) -> str:
+    off = study.amount(need.forecast, need.floor * study.tolerance(need.forecast))
     return (
-        f"{curve.method.name} never reaches it: the {statistic_words(found.statistic)} of {found.forecast} stays off "
-        f"by about {off}, {rounded_text(found.floor)} times what was asked for, however many "
+        f"{curve.method.name} never reaches it: the {statistic_words(need.statistic)} of {need.forecast} stays off "
+        f"by about {off}, {rounded_text(need.floor)} times what was asked for, however many "
         "trials it runs."
     )
 
 
-def _unknown_text(curve: Curve, found: Need) -> str:
+def _unknown_text(curve: Curve, need: Need) -> str:
     if curve.method.errors != "floor":
         return (
             f"These runs cannot tell what {curve.method.name} needs: too few of them gave a number for the "
-            f"{statistic_words(found.statistic)} of {found.forecast}. Longer runs can."
+            f"{statistic_words(need.statistic)} of {need.forecast}. Longer runs can."
         )
     return (
         f"These runs cannot tell whether {curve.method.name} reaches it: more trials do not remove all of its error, "
-        f"and only more and longer runs can show whether what is left of it in the {statistic_words(found.statistic)} "
-        f"of {found.forecast} is small enough."
+        f"and only more and longer runs can show whether what is left of it in the {statistic_words(need.statistic)} "
+        f"of {need.forecast} is small enough."
     )
 
 
-def _undecided_text(study: Study, curve: Curve, found: WorstError) -> str:
+def _undecided_text(study: Study, curve: Curve, result: WorstError) -> str:
     off, own, wanted = (
-        study.amount(found.forecast, each) for each in (abs(found.error), found.own, study.tolerance(found.forecast))
+        study.amount(result.forecast, each)
+        for each in (abs(result.error), result.own, study.tolerance(result.forecast))
     )
     return (
         f"This reference cannot tell whether {curve.method.name} is near enough: it is off by "
-        f"{off} ± {own} in the {statistic_words(found.statistic)} of {found.forecast}, where {wanted} was asked for. "
+        f"{off} ± {own} in the {statistic_words(result.statistic)} of {result.forecast}, where {wanted} was asked for. "
         "More --reference-trials can."
     )
 
@@ -283,32 +284,32 @@ class Parts:
     error: float
 
 
-def parts_of(study: Study, found: WorstError) -> Parts | None:
+def parts_of(study: Study, result: WorstError) -> Parts | None:
     """Return the parts of an error; None if there are no filters that reject anything, or no answer without them."""
     if study.unfiltered is None:
         return None
-    free, own = study.unfiltered.answers[found.forecast], study.unfiltered.errors[found.forecast]
-    truth = study.reference.answers[found.forecast]
-    filters = float(getattr(free, found.statistic)) - float(getattr(truth, found.statistic))
-    error = float(np.nan_to_num(getattr(own, found.statistic)))
-    return Parts(filters, found.error - filters, float(np.hypot(error, np.nan_to_num(found.own))))
+    free, own = study.unfiltered.answers[result.forecast], study.unfiltered.errors[result.forecast]
+    truth = study.reference.answers[result.forecast]
+    filters = float(getattr(free, result.statistic)) - float(getattr(truth, result.statistic))
+    error = float(np.nan_to_num(getattr(own, result.statistic)))
+    return Parts(filters, result.error - filters, float(np.hypot(error, np.nan_to_num(result.own))))
 
 
-def _missed_text(study: Study, curve: Curve, found: WorstError) -> str:
+def _missed_text(study: Study, curve: Curve, result: WorstError) -> str:
     """Return what a method misses by the most, and why, in a sentence or two."""
-    if not np.isfinite(found.times):
-        return f"{curve.method.name} has no number for {found.forecast}."
-    share = abs(found.error) / study.reference.widths[found.forecast]
+    if not np.isfinite(result.times):
+        return f"{curve.method.name} has no number for {result.forecast}."
+    share = abs(result.error) / study.reference.widths[result.forecast]
     text = (
-        f"{curve.method.name} misses the {statistic_words(found.statistic)} of {found.forecast} by "
-        f"{study.amount(found.forecast, abs(found.error))}, {percent_words(share)} of its 5–95 % range"
+        f"{curve.method.name} misses the {statistic_words(result.statistic)} of {result.forecast} by "
+        f"{study.amount(result.forecast, abs(result.error))}, {percent_words(share)} of its 5–95 % range"
     )
     why = _LEFT_OUT.get(curve.method.key, _ELSE)
     rejected = 1.0 - study.reference.acceptance.value
     if not study.model.filters or rejected == 0.0:
         return f"{text}: {why}."
     seen = f"it does not see the filters, which reject {percent_words(rejected)} of the trials"
-    parts = parts_of(study, found)
+    parts = parts_of(study, result)
     if parts is None:
         return (
             f"{text}. {capitalised(seen)}; and {why}. No answer without filters is known that would tell the "
@@ -316,7 +317,7 @@ def _missed_text(study: Study, curve: Curve, found: WorstError) -> str:
         )
 
     def part(value: float, because: str, otherwise: str) -> str:
-        return _part(study, found.forecast, value, parts, because, otherwise)
+        return _part(study, result.forecast, value, parts, because, otherwise)
 
     filters = part(parts.filters, f"because {seen}", "for the filters, which it does not see")
     formulas = part(parts.formulas, f"because {why}", "for what it leaves out of the formulas")

@@ -210,9 +210,9 @@ def _measured(
     measuring = _Measuring(model, reference, ladder, most, patience, own, steps)
     steps.can_end()
     once = measuring.once(ONCE)
-    found = measuring.run_drawn(DRAWN, [each for each in ENGINE_VARIANTS if each.engine != SLOW])
-    curves = tuple(curve for curve in found if curve.method in DRAWN)
-    engines = tuple(curve for curve in found if curve.method not in DRAWN)
+    result = measuring.run_drawn(DRAWN, [each for each in ENGINE_VARIANTS if each.engine != SLOW])
+    curves = tuple(curve for curve in result if curve.method in DRAWN)
+    engines = tuple(curve for curve in result if curve.method not in DRAWN)
     if not steps.ended:
         once = tuple(measuring.widen(curve) if curve.ends else curve for curve in once)
     for variant in steps.each(ENGINE_VARIANTS):
@@ -257,13 +257,13 @@ def ladder_of(model: CompiledModel, most: int | None, seed: int, acceptance: flo
     if most is not None:
         lengths = [most // STEP**k for k in range(LENGTHS) if k < 3 or most // STEP**k >= shortest]
         return tuple(dict.fromkeys(max(each, 16) for each in reversed(lengths)))
-    found = [shortest, shortest * STEP, shortest * STEP**2]
-    while len(found) < LENGTHS:
-        seconds = min(MONTE_CARLO.run(model, found[-1], seed).seconds for _ in range(2))
+    result = [shortest, shortest * STEP, shortest * STEP**2]
+    while len(result) < LENGTHS:
+        seconds = min(MONTE_CARLO.run(model, result[-1], seed).seconds for _ in range(2))
         if seconds * STEP > _LONGEST_RUN:
             break
-        found.append(found[-1] * STEP)
-    return tuple(found)
+        result.append(result[-1] * STEP)
+    return tuple(result)
 
 
 def _check(seed: int, replicates: int | None, trials: int | None, reference: int | None, model: CompiledModel) -> None:
@@ -317,7 +317,7 @@ class _Measuring:
 
     def once(self, methods: Sequence[Method]) -> tuple[Curve, ...]:
         """Run the methods that give one answer; twice, so that the second run shows what they cost."""
-        found = []
+        curves = []
         for method in methods:
             if self._steps.ended:
                 self.absent[method.name] = "the study was interrupted before it"
@@ -331,8 +331,8 @@ class _Measuring:
             runs = runs_of(result.evaluations, [result], self._reference)
             ranges = {name: (a.least, a.most) for name, a in result.answers.items() if np.isfinite(a.least)}
             setup = max(0.0, first.seconds - again.seconds)
-            found.append(Curve(method, (runs,), setup, result.remarks, ranges, ends=result.ends))
-        return tuple(found)
+            curves.append(Curve(method, (runs,), setup, result.remarks, ranges, ends=result.ends))
+        return tuple(curves)
 
     def widen(self, curve: Curve) -> Curve:
         """Bounds by optimisation, no narrower than what any run has drawn."""
@@ -375,9 +375,9 @@ class _Measuring:
                     known = results[method.key, budget]
                     if not self._enough(known, method in engines):
                         known.append(self._run(method, budget, seed))
-        found = {m.key: self._curve(m, firsts[m.key], results) for m in able if m not in engines}
-        same = [self._engine_curve(e, firsts[e.key], results, found[MONTE_CARLO.key]) for e in engines if e in able]
-        return (*found.values(), *same)
+        result = {m.key: self._curve(m, firsts[m.key], results) for m in able if m not in engines}
+        same = [self._engine_curve(e, firsts[e.key], results, result[MONTE_CARLO.key]) for e in engines if e in able]
+        return (*result.values(), *same)
 
     def _enough(self, known: Sequence[MethodResult], engine: bool) -> bool:
         """Whether there are enough runs of one method and length: as many as wanted, or as their time allows."""
@@ -390,10 +390,10 @@ class _Measuring:
     def _run(self, method: Method, budget: int, seed: int) -> MethodResult:
         """One run of a method; one that fails because it has too few accepted trials counts as failed."""
         try:
-            found = method.run(self._model, budget, seed)
-            for each in found.extremes:
+            result = method.run(self._model, budget, seed)
+            for each in result.extremes:
                 self._remember(each)
-            return replace(found, extremes=())
+            return replace(result, extremes=())
         except SimulationError as error:
             nothing = {forecast.name: Answer() for forecast in self._model.forecasts}
             return MethodResult(np.nan, budget, nothing, remarks=(str(error),))
@@ -453,11 +453,11 @@ class _Measuring:
             self.absent[method.name] = str(error)
             return None
 
-    def _apart(self, found: Sequence[MethodResult], numpy: Sequence[MethodResult]) -> float:
+    def _apart(self, results: Sequence[MethodResult], numpy: Sequence[MethodResult]) -> float:
         """How far an engine's answers are from those of `numpy` at the same trials, in standard deviations."""
         apart = [
             abs(getattr(answer, statistic) - getattr(other.answers[name], statistic)) / self._reference.answers[name].sd
-            for one, other in zip(found, numpy, strict=False)
+            for one, other in zip(results, numpy, strict=False)
             for name, answer in one.answers.items()
             for statistic in STATISTICS
             if self._reference.widths[name] > 0.0

@@ -112,30 +112,30 @@ def _errors(points: Floats, values: Floats) -> Floats:
     """
     tested = len(points) // _TEST_SHARE
     sound = np.isfinite(values).all(axis=0)
-    found = np.full(values.shape[1], np.inf)
+    result = np.full(values.shape[1], np.inf)
     good = values[:, sound]
     if not sound.any():
-        return found
+        return result
     missed = fit_quadratic(points[tested:], good[tested:])(points[:tested]) - good[:tested]
     spread = good.std(axis=0)
-    found[sound] = np.sqrt(np.mean(missed**2, axis=0)) / np.where(spread > 0.0, spread, 1.0)
-    return found
+    result[sound] = np.sqrt(np.mean(missed**2, axis=0)) / np.where(spread > 0.0, spread, 1.0)
+    return result
 
 
 def _cut(model: CompiledModel, errors: dict[Cell, float]) -> list[Cell]:
     """Return the cells at which following the formulas upwards ends: smooth ones, and the assumptions themselves."""
-    needs, found = model.needed.graph.needs, dict[Cell, None]()
+    needs, result = model.needed.graph.needs, dict[Cell, None]()
     seen: set[Cell] = set()
     open_ = targets_of(model.forecasts, model.filters)[::-1]
     ends = {a.cell for a in model.live} | {cell for cell, error in errors.items() if error <= _TOLERANCE}
     while open_:
         cell = open_.pop()
         if cell in ends:
-            found[cell] = None
+            result[cell] = None
         elif cell not in seen:
             seen.add(cell)
             open_ += needs.get(cell, ())
-    return [*found]
+    return [*result]
 
 
 def _run(
@@ -156,10 +156,10 @@ def _run(
         points = np.column_stack([drawn[a.name][:n] for a in model.live])
         given = {a.name: column for a, column in zip(model.live, points.T, strict=True)}
         given |= {inputs[cell]: c for cell, c in zip(replaced, polynomials(points).T, strict=True)}
-        found = evaluate(np.column_stack([given[a.name] for a in rest.live]))
-        accepted = found.accepted & ~np.isnan(points).any(axis=1)
+        outcomes = evaluate(np.column_stack([given[a.name] for a in rest.live]))
+        accepted = outcomes.accepted & ~np.isnan(points).any(axis=1)
         count += int(np.count_nonzero(accepted))
-        columns.append(found.forecasts[accepted])
+        columns.append(outcomes.forecasts[accepted])
     return count, np.concatenate(columns)
 
 
@@ -185,8 +185,8 @@ class Quadratic:
         """Return the values at `(n, k)` points, `(n, q)`."""
         parts = [points[start : start + _AT_ONCE] for start in range(0, len(points), _AT_ONCE)]
         # Not a matrix product: these are small, and its threads would wait for each other.
-        found = [np.einsum("qt,tn->qn", self.weights, _terms((part - self.centre) / self.scale)) for part in parts]
-        return np.concatenate(found, axis=1).T
+        result = [np.einsum("qt,tn->qn", self.weights, _terms((part - self.centre) / self.scale)) for part in parts]
+        return np.concatenate(result, axis=1).T
 
 
 def fit_quadratic(points: Floats, values: Floats) -> Quadratic:
@@ -203,11 +203,11 @@ def _terms(z: Floats) -> Floats:
     """(coefficients, n): 1, the variables, their squares and, of few variables, their products."""
     n, k = z.shape
     columns = np.ascontiguousarray(z.T)
-    found = np.empty((Quadratic.coefficients(k), n))
-    found[0], found[1 : 1 + k] = 1.0, columns
-    np.multiply(columns, columns, out=found[1 + k : 1 + 2 * k])
+    values = np.empty((Quadratic.coefficients(k), n))
+    values[0], values[1 : 1 + k] = 1.0, columns
+    np.multiply(columns, columns, out=values[1 + k : 1 + 2 * k])
     start = 1 + 2 * k
     for i in range(k - 1 if k <= _MOST_WITH_PRODUCTS else 0):
-        np.multiply(columns[i], columns[i + 1 :], out=found[start : start + k - 1 - i])
+        np.multiply(columns[i], columns[i + 1 :], out=values[start : start + k - 1 - i])
         start += k - 1 - i
-    return found
+    return values

@@ -74,12 +74,12 @@ class Axis:
         """Return the number of a value; None if it is none of them."""
         if self.computed:
             return 0
-        found = min(range(self.count), key=lambda at: abs(self.value(at) - value)) if not self.fine else None
-        if found is None:
+        result = min(range(self.count), key=lambda at: abs(self.value(at) - value)) if not self.fine else None
+        if result is None:
             assert self.decision.between is not None
-            found = min(max(round((value - self.decision.between[0]) / self.step), 0), self.count - 1)
-        same = math.isclose(self.value(found), value, rel_tol=1e-9, abs_tol=1e-12)
-        return found if same else None
+            result = min(max(round((value - self.decision.between[0]) / self.step), 0), self.count - 1)
+        same = math.isclose(self.value(result), value, rel_tol=1e-9, abs_tol=1e-12)
+        return result if same else None
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,11 +131,11 @@ class Equalities:
 
     def completed(self, values: Values) -> Values:
         """Return the values of a candidate with those that are computed."""
-        found, given = [*values], np.array(values)
+        result, given = [*values], np.array(values)
         for at, value in zip(self.computed, (-(self.constants + self.factors @ given)).tolist(), strict=True):
             size = max(abs(value), *map(abs, values), 1e-300)
-            found[at] = round(value, 12 - math.floor(math.log10(size))) + 0.0  # so that no rounding is shown
-        return tuple(found)
+            result[at] = round(value, 12 - math.floor(math.log10(size))) + 0.0  # so that no rounding is shown
+        return tuple(result)
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,13 +149,13 @@ class Space:
     @classmethod
     def of(cls, decisions: Sequence[Decision], requirements: tuple[Requirement, ...]) -> Space:
         """Return the space of decisions: equalities compute some of those that may have any value from the others."""
-        axes, found = tuple(map(Axis.of, decisions)), Equalities.of(decisions, requirements)
-        if found is not None:
+        axes, equalities = tuple(map(Axis.of, decisions)), Equalities.of(decisions, requirements)
+        if equalities is not None:
             axes = tuple(
-                replace(axis, count=1, fine=False, computed=True) if number in found.computed else axis
+                replace(axis, count=1, fine=False, computed=True) if number in equalities.computed else axis
                 for number, axis in enumerate(axes)
             )
-        return cls(axes, requirements, found)
+        return cls(axes, requirements, equalities)
 
     @property
     def size(self) -> int:
@@ -179,12 +179,12 @@ class Space:
 
     def _beyond(self, candidate: Values) -> float:
         """Return how far computed decisions lie beyond their ranges, as shares of these; added up."""
-        found = 0.0
+        result = 0.0
         for axis, value in zip(self.axes, candidate, strict=True):
             if axis.computed and axis.decision.between is not None:
                 low, high = axis.decision.between
-                found += max(0.0, low - value, value - high) / (high - low)
-        return found
+                result += max(0.0, low - value, value - high) / (high - low)
+        return result
 
     def every(self) -> Iterator[Values]:
         """Yield all candidates that are allowed."""
@@ -336,7 +336,7 @@ class Tried:
         """
         candidates = [*dict.fromkeys(candidates)]
         self.extend(candidates, n)
-        return sorted((self.standing(each, n) for each in candidates), key=lambda found: found.rank, reverse=True)
+        return sorted((self.standing(each, n) for each in candidates), key=lambda standing: standing.rank, reverse=True)
 
     def better(self, best: Values, other: Values) -> tuple[float, float]:
         """Return by how much another candidate is better than the best, over the same trials, and its error."""
@@ -344,5 +344,5 @@ class Tried:
         return apart(self.standing(best, n).goal, self.standing(other, n).goal)
 
 
-def _times(sign: float, found: Measured) -> Floats | None:
-    return None if found.pulls is None else found.pulls if sign > 0 else -found.pulls
+def _times(sign: float, measured: Measured) -> Floats | None:
+    return None if measured.pulls is None else measured.pulls if sign > 0 else -measured.pulls

@@ -96,11 +96,11 @@ class Reader:
             SimulationError: it is none.
         """
         parsing = _Parsing(self, text)
-        found = parsing.sum()
+        measure = parsing.sum()
         parsing.end()
-        if not found.terms:
+        if not measure.terms:
             raise SimulationError(f"{text!r} is a number, and nothing to choose by", hint=_EXAMPLE)
-        return Goal(found, maximise)
+        return Goal(measure, maximise)
 
     def requirement(self, text: str) -> Requirement:
         """Read what is required.
@@ -191,8 +191,8 @@ class _Parsing:
 
     def relation(self) -> str:
         """Read what stands between the sides of a requirement."""
-        found = self._match(_RELATION)
-        spelt = "" if found is None else _SPELT.get(found[0], found[0])
+        match = self._match(_RELATION)
+        spelt = "" if match is None else _SPELT.get(match[0], match[0])
         if not spelt:
             hint = "Write >= or <= between what is required and its limit, or = between decisions"
             raise self._wrong("a requirement is a comparison", hint)
@@ -204,14 +204,14 @@ class _Parsing:
             raise self._wrong("this is not understood", _EXAMPLE)
 
     def _sign(self) -> str:
-        found = self._match(re.compile(r"[+\-−–]"))
-        return "" if found is None else "+" if found[0] == "+" else "-"
+        match = self._match(re.compile(r"[+\-−–]"))
+        return "" if match is None else "+" if match[0] == "+" else "-"
 
     def _term(self, sign: float) -> tuple[Term | None, float]:
         factor, statistic = sign, self._match(_STATISTIC)
-        found = None if statistic is not None else self._match(_NUMBER)
-        if found is not None:
-            factor = sign * _number(found[0])
+        match = None if statistic is not None else self._match(_NUMBER)
+        if match is not None:
+            factor = sign * _number(match[0])
             if self._match(re.compile(r"[*·×]")) is None:  # the sign of multiplication
                 return None, factor
             statistic = self._match(_STATISTIC)
@@ -266,7 +266,7 @@ class _Parsing:
         word = re.split(r"[<>=*+]", rest)[0].strip()
         return did_you_mean(word, names) if word else f"There are {', '.join(map(repr, names))}"
 
-    def _statistic(self, factor: float, found: re.Match[str]) -> Term:
+    def _statistic(self, factor: float, match: re.Match[str]) -> Term:
         name = self._name()
         number = self._reader.forecast(name)
         if number is None:
@@ -276,22 +276,22 @@ class _Parsing:
         code = model.formats[forecast.name]
         two = forecast.name in model.two_valued
         form = Form(Kind.YES_NO if two else kind_of_format(code) or Kind.NUMBER, code).beside_units(forecast.units)
-        if found["share"] is not None:
-            return self._share(factor, number, is_text, by_sign=found["link"].casefold() == "that")
+        if match["share"] is not None:
+            return self._share(factor, number, is_text, by_sign=match["link"].casefold() == "that")
         if is_text:
             hint = f'Ask for the probability of a text, such as "probability of {forecast.name} is Yes"'
             raise self._wrong(f"the answers of {forecast.name!r} are texts", hint)
         at = self._reader.column(number)
-        if found["mean"] is not None:
+        if match["mean"] is not None:
             self._forms.append((form, False, forecast.units))
             return Term(factor, share_of_yes if two else mean, at)
-        if found["sd"] is not None:
+        if match["sd"] is not None:
             self._forms.append((form, True, forecast.units))
             return Term(factor, deviation, at)
-        if found["variance"] is not None or found["cv"] is not None:
+        if match["variance"] is not None or match["cv"] is not None:
             self._forms.append((Form(), False, ""))
-            return Term(factor, variance if found["cv"] is None else variation, at)
-        percent = 50.0 if found["median"] is not None else float(found["percent"] or found["percentile"])
+            return Term(factor, variance if match["cv"] is None else variation, at)
+        percent = 50.0 if match["median"] is not None else float(match["percent"] or match["percentile"])
         if not 0.0 < percent < 100.0:
             raise self._wrong(f"{number_text(percent)} is no percentile", "Percentiles lie above 0 and below 100")
         self._forms.append((form, False, forecast.units))
@@ -332,25 +332,25 @@ class _Parsing:
     def _text_of(self, name: str, is_text: bool) -> str:
         if not is_text:
             raise self._wrong(f"the answers of {name!r} are no texts", _EXAMPLE)
-        found = self._match(re.compile(r"'([^']+)'|\"([^\"]+)\"|“([^”]+)”|([^<>=≤≥]+)"))
-        if found is None:
+        match = self._match(re.compile(r"'([^']+)'|\"([^\"]+)\"|“([^”]+)”|([^<>=≤≥]+)"))
+        if match is None:
             raise self._wrong("a text is missing", "Write it behind `is`")
-        text: str = next(filter(None, found.groups()))
+        text: str = next(filter(None, match.groups()))
         return text.strip()
 
     def _signed_number(self) -> float:
-        sign, found = self._sign(), self._match(_NUMBER)
-        if found is None:
+        sign, match = self._sign(), self._match(_NUMBER)
+        if match is None:
             raise self._wrong("a number is missing", _EXAMPLE)
-        return (-1.0 if sign == "-" else 1.0) * _number(found[0])
+        return (-1.0 if sign == "-" else 1.0) * _number(match[0])
 
     def _match(self, pattern: re.Pattern[str]) -> re.Match[str] | None:
         while self._text[self._at : self._at + 1].isspace():
             self._at += 1
-        found = pattern.match(self._text, self._at)
-        if found is not None:
-            self._at = found.end()
-        return found
+        match = pattern.match(self._text, self._at)
+        if match is not None:
+            self._at = match.end()
+        return match
 
     def _wrong(self, why: str, hint: str) -> SimulationError:
         marked = f"{self._text[: self._at].rstrip()} ⟨{self._text[self._at :].strip()}⟩".strip()

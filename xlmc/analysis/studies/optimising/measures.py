@@ -87,10 +87,10 @@ class Term:
         if count < _LEAST_TRIALS:
             return Measured(math.nan)
         whole = count == column.size
-        value, found, least = self.number(column if whole else column[known])
-        pulls = found if whole else np.zeros(column.size)
+        value, result, least = self.number(column if whole else column[known])
+        pulls = result if whole else np.zeros(column.size)
         if not whole:
-            pulls[known] = found
+            pulls[known] = result
         if self.factor != 1.0:
             pulls = self.factor * pulls
         return Measured(self.factor * value, pulls, abs(self.factor) * least)
@@ -123,15 +123,15 @@ class Measure:
 
     def of(self, columns: Floats, values: Values) -> Measured:
         """Measure it on the columns of a candidate, `(columns, n)`."""
-        found = [each.of(columns, values) for each in self.terms]
-        pulls = [each.pulls for each in found if each.pulls is not None]
-        value = self.constant + sum(each.value for each in found)
+        results = [each.of(columns, values) for each in self.terms]
+        pulls = [each.pulls for each in results if each.pulls is not None]
+        value = self.constant + sum(each.value for each in results)
         total = None if not pulls else np.sum(pulls, axis=0) if len(pulls) > 1 else pulls[0]
-        return Measured(value, total, math.fsum(each.least for each in found))
+        return Measured(value, total, math.fsum(each.least for each in results))
 
-    def shown(self, found: Estimate) -> str:
+    def shown(self, estimate: Estimate) -> str:
         """Write a value of it."""
-        text = self.form.spread(found) if self.spread else self.form.estimate(found)
+        text = self.form.spread(estimate) if self.spread else self.form.estimate(estimate)
         return f"{text} {self.units}" if self.units else text
 
 
@@ -175,17 +175,17 @@ class Requirement:
         """Whether decisions alone decide it, and meet it; True where statistics decide it."""
         if not self.slack.exact:
             return True
-        found = self.slack.of(np.empty((0, 0)), values).value
+        value = self.slack.of(np.empty((0, 0)), values).value
         scale = _SLACK * (abs(self.slack.constant) + sum(abs(t.factor * values[t.at]) for t in self.slack.terms))
         if self.equal:
-            return abs(found) <= scale
-        return found > scale if self.strict else found >= -scale
+            return abs(value) <= scale
+        return value > scale if self.strict else value >= -scale
 
     def measured(self, columns: Floats, values: Values) -> Measured:
         """Measure how far it holds: 0 or more where it does."""
-        found = self.slack.of(columns, values)
+        result = self.slack.of(columns, values)
         if not self.slack.exact:
-            return found
+            return result
         if self.holds_for(values):
-            return Measured(0.0 if self.equal else max(found.value, 0.0))
-        return Measured(-abs(found.value) or -_SLACK)
+            return Measured(0.0 if self.equal else max(result.value, 0.0))
+        return Measured(-abs(result.value) or -_SLACK)

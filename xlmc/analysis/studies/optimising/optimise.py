@@ -75,12 +75,12 @@ class RequirementResult:
     """A requirement, and how far the best decisions meet it.
 
     Attributes:
-        found: the value of its left side, from the run.
+        estimate: the value of its left side, from the run.
         chance: the probability that it holds, whatever else another seed would show.
     """
 
     requirement: Requirement
-    found: Estimate
+    estimate: Estimate
     chance: float
 
     @property
@@ -112,7 +112,7 @@ class Optimised(Shown):
         goal: that was sought.
         decisions: that were chosen.
         best: their values.
-        found: the goal with them.
+        estimate: the goal with them.
         requirements: what is required, with them.
         as_it_is: the goal with the workbook's own decisions; None where the cells hold no numbers.
         indifference: a difference of the goal that does not matter.
@@ -139,7 +139,7 @@ class Optimised(Shown):
     goal: Goal
     decisions: tuple[Decision, ...]
     best: Values
-    found: Estimate
+    estimate: Estimate
     requirements: tuple[RequirementResult, ...]
     as_it_is: Estimate | None
     indifference: float
@@ -167,7 +167,7 @@ class Optimised(Shown):
     @property
     def meets(self) -> bool:
         """Whether every requirement is met, more likely than not, by trials of which errors take few enough."""
-        return self.holds and not math.isnan(self.found.value) and self.is_whole
+        return self.holds and not math.isnan(self.estimate.value) and self.is_whole
 
     @property
     def holds(self) -> bool:
@@ -276,13 +276,13 @@ def optimise(
     compared, confidence = judged(fresh, best, rivals, difference, settings.trials)
     run = _run(model, chosen, best, options)
     columns = _columns(run, reader)
-    found = goal.measure.of(columns, best)
+    measured = goal.measure.of(columns, best)
     return Optimised(
         run=run,
         goal=goal,
         decisions=chosen,
         best=best,
-        found=_estimate(found, run.accepted),
+        estimate=_estimate(measured, run.accepted),
         requirements=tuple(_result(each, columns, best, run.accepted) for each in requirements),
         as_it_is=as_it_is,
         indifference=difference,
@@ -364,10 +364,10 @@ def _columns(run: RunResult, reader: Reader) -> Floats:
     return rows
 
 
-def _estimate(found: Measured, n: int) -> Estimate:
-    if found.pulls is None:
-        return Estimate(found.value, n=n)
-    return with_error(found.value, found.error, n - 1.0, 0.95, n)
+def _estimate(measured: Measured, n: int) -> Estimate:
+    if measured.pulls is None:
+        return Estimate(measured.value, n=n)
+    return with_error(measured.value, measured.error, n - 1.0, 0.95, n)
 
 
 def _result(requirement: Requirement, columns: Floats, best: Values, n: int) -> RequirementResult:
@@ -402,13 +402,13 @@ def _what_is_odd(tried: Tried, run: RunResult, reader: Reader) -> _Odd:
 
 def _excluded(tried: Tried, best: Values, indifference: float) -> tuple[Excluded, ...]:
     """Return the candidates that lose too many trials, those first that look better than the best."""
-    found = []
+    results = []
     for each in map(tried.standing, tried.columns):
         if each.excess and each.candidate != best:
             looks_better = all(not slack.value < 0.0 for slack in each.slacks)
             looks_better = looks_better and tried.better(best, each.candidate)[0] > indifference
-            found.append(Excluded(each.candidate, each.lost, looks_better))
-    return tuple(sorted(found, key=lambda each: not each.looks_better))
+            results.append(Excluded(each.candidate, each.lost, looks_better))
+    return tuple(sorted(results, key=lambda each: not each.looks_better))
 
 
 def _curve(tried: Tried) -> tuple[tuple[float, float, float], ...]:

@@ -75,7 +75,7 @@ def search(tried: Tried, space: Space, first: Values | None, trials: int, seed: 
     for divisor, share in ((32, _FIRST_STEP), (8, _FIRST_STEP / 8), (2, _FIRST_STEP / 32)):
         n = max(least, 1 << round(math.log2(max(trials // divisor, 2))))
         tell(f"searching step by step, {count_text(n)} trials each")
-        best = max((tried.standing(each) for each in _leading(tried, n)), key=lambda found: found.rank)
+        best = max((tried.standing(each) for each in _leading(tried, n)), key=lambda standing: standing.rank)
         if tried.requirements:
             best = _slide(tried, space, best, n, share, _SLIDING * len(space.axes))
         if divisor > 2 or not (edged and all(axis.fine for axis in space.axes)):
@@ -83,7 +83,7 @@ def search(tried: Tried, space: Space, first: Values | None, trials: int, seed: 
     if edged:  # more trials need less of a margin
         n = 2 * trials
         tell(f"nearer to what is required, {count_text(n)} trials each")
-        best = max((tried.standing(each) for each in _leading(tried, n, 2)), key=lambda found: found.rank)
+        best = max((tried.standing(each) for each in _leading(tried, n, 2)), key=lambda result: result.rank)
         _slide(tried, space, best, n, _FIRST_STEP / 4, 6 + 4 * len(space.axes))
     return "differential evolution, then step by step"
 
@@ -109,7 +109,7 @@ def _enough(tried: Tried, space: Space, first: Values | None, least: int, trials
 
 def _leading(tried: Tried, n: int, count: int = 5) -> list[Values]:
     """Return the candidates that are best by what is known, with n trials."""
-    ranked = sorted((tried.standing(each) for each in tried.columns), key=lambda found: found.rank, reverse=True)
+    ranked = sorted((tried.standing(each) for each in tried.columns), key=lambda standing: standing.rank, reverse=True)
     leading = [each.candidate for each in ranked[:count]]
     tried.extend(leading, n)
     return leading
@@ -184,9 +184,9 @@ def _slide(tried: Tried, space: Space, best: Standing, n: int, share: float, mos
         return tried.standing(candidate, n)
 
     def slacks(at: NDArray[np.float64]) -> NDArray[np.float64]:
-        found = standing(at)
+        result = standing(at)
         edges = [*at, *(1.0 - at)]
-        return np.array([*(_beyond_margin(each) for each in found.slacks), *edges])
+        return np.array([*(_beyond_margin(each) for each in result.slacks), *edges])
 
     minimize(
         lambda at: -standing(at).goal.value / scale,
@@ -196,7 +196,7 @@ def _slide(tried: Tried, space: Space, best: Standing, n: int, share: float, mos
         options={"rhobeg": share / 2.0, "maxiter": max(most, len(moving) + 2)},
         tol=share / 16.0,
     )
-    return max((tried.standing(each, n) for each in met), key=lambda found: found.rank)
+    return max((tried.standing(each, n) for each in met), key=lambda results: results.rank)
 
 
 def _beyond_margin(slack: Measured) -> float:
@@ -218,9 +218,9 @@ def _step_by_step(tried: Tried, space: Space, best: Standing, n: int, share: flo
         neighbours = {space.candidate(each): each for each in _neighbours(at, steps, space, rng)}
         allowed = [each for each in neighbours if space.allows(each)]
         if allowed:
-            found = tried.standings(allowed, n)[0]
-            if found.rank > known:
-                at, known, moved = neighbours[found.candidate], found.rank, True
+            standing = tried.standings(allowed, n)[0]
+            if standing.rank > known:
+                at, known, moved = neighbours[standing.candidate], standing.rank, True
         if not moved:
             if all(step <= least for step, least in zip(steps, finest, strict=True)):
                 return tried.standing(space.candidate(at), n)
@@ -240,8 +240,8 @@ def _neighbours(at: Sequence[int], steps: Sequence[int], space: Space, rng: np.r
     if len(moves) > _PAIRED:
         pairs = [pairs[each] for each in rng.choice(len(pairs), _PAIRED * 6, replace=False)]
     for several in [*([each] for one in moves for each in one), *([a, b] for x, y in pairs for a in x for b in y)]:
-        found = list(at)
+        result = list(at)
         for number, value in several:
-            found[number] = min(max(int(value), 0), space.axes[number].count - 1)
-        if found != list(at):
-            yield found
+            result[number] = min(max(int(value), 0), space.axes[number].count - 1)
+        if result != list(at):
+            yield result

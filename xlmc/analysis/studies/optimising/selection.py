@@ -139,9 +139,9 @@ def _exceeds(ahead: float, error: float, indifference: float) -> float:
 
 def rivals_of(tried: Tried, best: Values, indifference: float, trials: int) -> list[Rival]:
     """Return all other candidates that were tried, those first that are most likely better."""
-    found = [_rival(tried, best, each, indifference, trials) for each in tried.columns if each != best]
+    rivals = [_rival(tried, best, each, indifference, trials) for each in tried.columns if each != best]
     return sorted(
-        found, key=lambda each: (each.chance if each.chance > _UNLIKELY else 0.0, each.meets, each.ahead), reverse=True
+        rivals, key=lambda each: (each.chance if each.chance > _UNLIKELY else 0.0, each.meets, each.ahead), reverse=True
     )
 
 
@@ -157,22 +157,22 @@ def judged(
     doubt = math.fsum(each.chance for each in others)
     names = [each.candidate for each in few]
     fresh.extend([best, *names], trials)
-    found = {each: _fresh_rival(fresh, best, each, indifference, trials) for each in names}
+    result = {each: _fresh_rival(fresh, best, each, indifference, trials) for each in names}
     n = trials
     try:
-        while math.fsum(each.chance for each in found.values()) + doubt > 1.0 - _SURE_ENOUGH and n < _MORE * trials:
-            unsure = [each for each in found if found[each].chance > _UNLIKELY]
+        while math.fsum(each.chance for each in result.values()) + doubt > 1.0 - _SURE_ENOUGH and n < _MORE * trials:
+            unsure = [each for each in result if result[each].chance > _UNLIKELY]
             n *= 2
             fresh.extend([best, *unsure], n)
-            found |= {each: _fresh_rival(fresh, best, each, indifference, trials) for each in unsure}
+            result |= {each: _fresh_rival(fresh, best, each, indifference, trials) for each in unsure}
     except Ended:
         pass
-    confidence = max(0.0, 1.0 - math.fsum(each.chance for each in found.values()) - doubt)
-    known = (each for each in found.values() if not math.isnan(each.ahead))
+    confidence = max(0.0, 1.0 - math.fsum(each.chance for each in result.values()) - doubt)
+    known = (each for each in result.values() if not math.isnan(each.ahead))
     return sorted(known, key=lambda each: (each.meets, each.ahead), reverse=True), confidence
 
 
 def _fresh_rival(fresh: Tried, best: Values, other: Values, indifference: float, trials: int) -> Rival:
     """Compare over fresh trials: one that does not meet the requirements as surely as the best must is no rival."""
-    found = _rival(fresh, best, other, indifference, trials)
-    return found if found.meets else Rival(other, found.ahead, found.error, 0.0, found.trials, meets=False)
+    rival = _rival(fresh, best, other, indifference, trials)
+    return rival if rival.meets else Rival(other, rival.ahead, rival.error, 0.0, rival.trials, meets=False)

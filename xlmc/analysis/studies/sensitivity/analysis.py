@@ -56,8 +56,8 @@ def sensitivities(
     """
     model, known = simulation.model, _FOUND.setdefault(simulation, {})
     names = simulation.detailed if names is None else names
-    found = [i for i, each in enumerate(model.forecasts) if each.name in names]
-    wanted = tuple(i for i in found if i not in model.categories)  # texts have no variance to explain
+    result = [i for i, each in enumerate(model.forecasts) if each.name in names]
+    wanted = tuple(i for i in result if i not in model.categories)  # texts have no variance to explain
     asked = frozenset(assumption_named(model, name, drawn=True) for name in assumptions)
     if (wanted, asked) not in known:
         known[wanted, asked] = _analyse(simulation, wanted, asked, progress)
@@ -70,7 +70,7 @@ def _analyse(
     model = simulation.model
     forecasts = [model.forecasts[index] for index in wanted]
     chosen = choose(simulation, forecasts, asked)
-    found = influences(simulation, chosen, forecasts, lambda share: progress(0.5 * share))
+    result = influences(simulation, chosen, forecasts, lambda share: progress(0.5 * share))
     moves = one_at_a_time(model, [a.name for a in model.live], wanted, MEASURED, asked)
     reason = why_not(simulation) if model.live else "Sobol indices are not given: no assumption is drawn"
     progress(0.5)
@@ -86,19 +86,19 @@ def _analyse(
     limits = limit_trials(simulation, _MOST_LIMITS, wanted[:_MOST_LIMIT_FORECASTS])
     return Sensitivities(
         accepted=simulation.accepted,
-        examined=max((each.trials for each in found), default=0),
+        examined=max((each.trials for each in result), default=0),
         forecasts=tuple(
             ForecastSensitivity(
                 forecast=forecast.name,
                 units=forecast.units,
                 trials=each.trials,
-                influences=tuple(_with_sobol(influence, sobol, index) for influence in each.found),
+                influences=tuple(_with_sobol(influence, sobol, index) for influence in each.influences),
                 omitted=len(model.live) - len(names),
                 base=moves.base[index],
                 bars=moves.bars[index],
                 form=simulation.results[forecast.name].form,
             )
-            for index, forecast, each, names in zip(wanted, forecasts, found, chosen.names, strict=True)
+            for index, forecast, each, names in zip(wanted, forecasts, result, chosen.names, strict=True)
         ),
         omitted=len(model.live) - len(chosen.most_influential),
         medians=moves.medians,
@@ -113,11 +113,11 @@ def _analyse(
 
 def _measured_for(chosen: Chosen, wanted: Sequence[int]) -> dict[str, list[int]]:
     """Return the numbers of the forecasts that each assumption is measured for, the most influential first."""
-    found: dict[str, list[int]] = {name: [] for name in chosen.most_influential}
+    result: dict[str, list[int]] = {name: [] for name in chosen.most_influential}
     for index, names in zip(wanted, chosen.names, strict=True):
         for name in names:
-            found[name].append(index)
-    return found
+            result[name].append(index)
+    return result
 
 
 def _with_sobol(influence: Influence, run: SobolRun, forecast: int) -> Influence:

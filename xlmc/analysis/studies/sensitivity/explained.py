@@ -104,12 +104,12 @@ def explained(x: Ranked, y: Floats, units: Units) -> Explained:
     beside = _beside_neighbours(z)
     enough = next((i for i, fit in enumerate(fits) if _is_enough(fit, fits[i + 1 :], beside)), None)
     chosen = len(fits) - 1 if enough is None else enough
-    found, few = _estimate(x, z, fits[chosen], units)
-    if found.interval is not None:
-        low, high = found.interval
-        high = max(found.value, min(high + _allowance(fits, chosen, beside), 1.0))
-        found = replace(found, interval=(low, high))
-    return Explained(found, enough is None or few, enough == 0)
+    estimate, few = _estimate(x, z, fits[chosen], units)
+    if estimate.interval is not None:
+        low, high = estimate.interval
+        high = max(estimate.value, min(high + _allowance(fits, chosen, beside), 1.0))
+        estimate = replace(estimate, interval=(low, high))
+    return Explained(estimate, enough is None or few, enough == 0)
 
 
 def _beside_neighbours(z: Floats) -> float:
@@ -146,7 +146,7 @@ def _estimate(x: Ranked, z: Floats, fit: _Fit, units: Units) -> tuple[Estimate, 
     pulls[x.order] = (1.0 - fit.value) * z * z - residual * residual * (n / (n - k))
     pulls -= pulls.mean()
     fitting = math.sqrt(2.0 * (k - 1)) / n * (1.0 - fit.value)
-    found = units.estimate(fit.value, units.error_of_fit(pulls, fitting))
+    estimate = units.estimate(fit.value, units.error_of_fit(pulls, fitting))
     squares = pulls * pulls
     few = float(squares.max()) > _FEW * float(squares.sum())
-    return found, few and found.error is not None and found.error > _WIDE
+    return estimate, few and estimate.error is not None and estimate.error > _WIDE

@@ -69,7 +69,7 @@ class Influences:
     """
 
     trials: int
-    found: tuple[Influence, ...]
+    influences: tuple[Influence, ...]
     coarse: tuple[str, ...] = ()
 
 
@@ -131,29 +131,29 @@ def influences(
     units = {a.name: a.units for a in simulation.model.live}
     draws = {name: _read_draws(simulation, name, rows) for name in chosen.most_influential}
     tables: dict[bytes, _Table] = {}
-    found = []
+    result = []
     for forecast, names, others in zip(forecasts, chosen.names, chosen.others.tolist(), strict=True):
         y = _read(simulation.forecasts[forecast.name], rows)
         known = ~np.isnan(y)
         table = tables.setdefault(known.tobytes(), _Table(draws, _units_of(replicate, known), known))
-        found.append(table.influences({name: units[name] for name in names}, y[known], others, len(units)))
-        progress(len(found) / len(forecasts))
+        result.append(table.influences({name: units[name] for name in names}, y[known], others, len(units)))
+        progress(len(result) / len(forecasts))
     for trials in _FINE_TRIALS:
-        pairs = sum(len(each.coarse) for each in found)
+        pairs = sum(len(each.coarse) for each in result)
         most = min(trials, _FINE_VALUES // max(pairs, 1))
         if pairs and most > rows.size < simulation.accepted:
-            found = _with_finer_shares(simulation, forecasts, found, most)
-    return found
+            result = _with_finer_shares(simulation, forecasts, result, most)
+    return result
 
 
 def _with_finer_shares(
-    simulation: RunResult, forecasts: Sequence[Forecast], found: Sequence[Influences], most: int
+    simulation: RunResult, forecasts: Sequence[Forecast], result: Sequence[Influences], most: int
 ) -> list[Influences]:
     """Return the same with the shares that ask for it from up to `most` trials."""
     rows, replicate = _examined_rows(simulation, most)
     tables: dict[bytes, tuple[Units, dict[str, Ranked]]] = {}
     finer = []
-    for forecast, each in zip(forecasts, found, strict=True):
+    for forecast, each in zip(forecasts, result, strict=True):
         if not each.coarse:
             finer.append(each)
             continue
@@ -168,15 +168,15 @@ def _with_finer_shares(
             replace(one, explained=now.share, explained_at_least=now.at_least)
             if (now := shares_now.get(one.assumption))
             else one
-            for one in each.found
+            for one in each.influences
         ]
         coarse = tuple(name for name in each.coarse if _asks_for_more(shares_now[name]))
-        finer.append(replace(each, found=tuple(sorted(changed, key=_by_share)), coarse=coarse))
+        finer.append(replace(each, influences=tuple(sorted(changed, key=_by_share)), coarse=coarse))
     return finer
 
 
-def _asks_for_more(found: Explained) -> bool:
-    return found.at_least or (found.share.error or 0.0) > _FINE_ERROR
+def _asks_for_more(result: Explained) -> bool:
+    return result.at_least or (result.share.error or 0.0) > _FINE_ERROR
 
 
 def _units_of(replicate: Ids | None, known: NDArray[np.bool_]) -> Units:
@@ -226,7 +226,7 @@ class _Table:
         correlations = [rank_correlation(x, ranked, self.units) for x in columns]
         shares_of = [explained(x, y, self.units) for x in columns]
         parts = zip(named.items(), columns, correlations, contributions(correlations, others), shares_of, strict=True)
-        found = [
+        result = [
             Influence(
                 assumption=name,
                 units=units,
@@ -241,7 +241,7 @@ class _Table:
             for (name, units), x, correlation, contribution, share in parts
         ]
         coarse = tuple(name for name, share in zip(named, shares_of, strict=True) if not share.coarse_enough)
-        return Influences(int(y.size), tuple(sorted(found, key=_by_share)), coarse)
+        return Influences(int(y.size), tuple(sorted(result, key=_by_share)), coarse)
 
 
 def _by_share(influence: Influence) -> tuple[float, float]:

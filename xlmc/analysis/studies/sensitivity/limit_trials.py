@@ -169,7 +169,7 @@ def limit_trials(simulation: RunResult, most: int, forecasts: Sequence[int]) -> 
     for i, limits in grids.items():
         limit, extra = cells.limits[i], more[i]
         trials = np.concatenate([index, extra.trials])
-        found = LimitTrials(
+        result = LimitTrials(
             relation=limit.relation,
             limit=float(now.bounds[i][0]),
             values=np.concatenate([now.filters[limit.filter_index], extra.values]),
@@ -179,7 +179,7 @@ def limit_trials(simulation: RunResult, most: int, forecasts: Sequence[int]) -> 
             trials=reached,
             loosened=again if limits else 0,
         )
-        tried.append(TriedLimit(limit, found, limits))
+        tried.append(TriedLimit(limit, result, limits))
     varying = [limit.filter.name for limit, fixed in zip(cells.limits, constant, strict=True) if not fixed]
     return LimitsFound(tuple(tried), max(0, len(fixed_limits) - most), tuple(dict.fromkeys(varying)))
 
@@ -228,7 +228,7 @@ def _find_rejected(
             mine = mask[every]
             values = looked.filters[cells.limits[i].filter_index][every[mine]]
             parts[i].append(_More(every[mine] + start, values, answers[:, mine]))
-    return {i: _More.join(found, len(forecasts)) for i, found in parts.items()}
+    return {i: _More.join(results, len(forecasts)) for i, results in parts.items()}
 
 
 def _within_loosest(limit: Limit, looked: _CellValues, limits: tuple[float, ...]) -> NDArray[np.bool_]:

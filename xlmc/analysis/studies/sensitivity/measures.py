@@ -311,11 +311,11 @@ class Noise:
     total: bool
 
 
-def noise(found: ForecastSensitivity) -> tuple[Noise, ...]:
+def noise(sensitivity: ForecastSensitivity) -> tuple[Noise, ...]:
     """Return the noise of the influences on a forecast, in their order."""
-    count = max(len(found.influences) + found.omitted, 1)
+    count = max(len(sensitivity.influences) + sensitivity.omitted, 1)
     each = 1.0 - (1.0 - _CHANCE) ** (1.0 / count)
-    return tuple(_noise(one, _errors(each / 2.0), _errors(each)) for one in found.influences)
+    return tuple(_noise(one, _errors(each / 2.0), _errors(each)) for one in sensitivity.influences)
 
 
 def _errors(chance: float) -> float:
@@ -325,16 +325,17 @@ def _errors(chance: float) -> float:
     return -float(ndtri(chance))
 
 
-def _noise(found: Influence, either: float, above: float) -> Noise:
+def _noise(influence: Influence, either: float, above: float) -> Noise:
     return Noise(
-        explained=found.explained.value <= found.explained_floor,
-        dependence=found.dependence.value <= found.dependence_floor,
-        correlation=_is_small(found.rank_correlation, either, abs(found.rank_correlation.value)),
-        first_order=found.first_order is not None and _is_small(found.first_order, above, found.first_order.value),
-        total=found.total is not None and _is_small(found.total, above, found.total.value),
+        explained=influence.explained.value <= influence.explained_floor,
+        dependence=influence.dependence.value <= influence.dependence_floor,
+        correlation=_is_small(influence.rank_correlation, either, abs(influence.rank_correlation.value)),
+        first_order=influence.first_order is not None
+        and _is_small(influence.first_order, above, influence.first_order.value),
+        total=influence.total is not None and _is_small(influence.total, above, influence.total.value),
     )
 
 
-def _is_small(found: Estimate, errors: float, size: float) -> bool:
+def _is_small(estimate: Estimate, errors: float, size: float) -> bool:
     """Whether a number is within so many of its errors of 0; where it has no error, nothing is known of that."""
-    return found.error is not None and math.isfinite(size) and size <= errors * found.error
+    return estimate.error is not None and math.isfinite(size) and size <= errors * estimate.error

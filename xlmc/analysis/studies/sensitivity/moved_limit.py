@@ -95,26 +95,26 @@ def _round_below(size: float) -> float:
 
 
 def moved_limit(
-    found: LimitTrials, limits: Sequence[float], names: Sequence[str], central: Sequence[float]
+    trials: LimitTrials, limits: Sequence[float], names: Sequence[str], central: Sequence[float]
 ) -> tuple[tuple[LimitPoint, ...], tuple[Slope, ...]]:
     """Return the answers at every one of these limits, ascending, the limit as it is among them; and their slopes
     there.
 
     Args:
-        found: the trials.
+        trials: the trials.
         limits: as `grid` gives them.
         names: of the `f` forecasts.
         central: their central ranges' shares.
     """
-    inside = [found.inside(limit) for limit in limits]
+    inside = [trials.inside(limit) for limit in limits]
     table = [
-        _answers_at(found, row, inside, limits, share) for row, share in zip(found.forecasts, central, strict=True)
+        _answers_at(trials, row, inside, limits, share) for row, share in zip(trials.forecasts, central, strict=True)
     ]
     points = tuple(
         LimitPoint(
             limit=limit,
-            trials=round(float(found.weights[mask].sum())),
-            acceptance=_acceptance(found, mask),
+            trials=round(float(trials.weights[mask].sum())),
+            acceptance=_acceptance(trials, mask),
             answers=tuple(LimitAnswer(name, *answers[index]) for name, (answers, _) in zip(names, table, strict=True)),
         )
         for index, (limit, mask) in enumerate(zip(limits, inside, strict=True))
@@ -122,24 +122,24 @@ def moved_limit(
     return points, tuple(Slope(name, slope) for name, (_, slope) in zip(names, table, strict=True))
 
 
-def _acceptance(found: LimitTrials, inside: Bools) -> Estimate:
+def _acceptance(trials: LimitTrials, inside: Bools) -> Estimate:
     """Return the share of all trials; the two parts have errors of their own."""
-    more = int(np.count_nonzero(inside & ~found.accepted))
-    known = proportion(int(np.count_nonzero(inside & found.accepted)), found.trials)
+    more = int(np.count_nonzero(inside & ~trials.accepted))
+    known = proportion(int(np.count_nonzero(inside & trials.accepted)), trials.trials)
     if not more:
         return known
-    loose = proportion(more, found.loosened)
+    loose = proportion(more, trials.loosened)
     error = math.hypot(known.error or 0.0, loose.error or 0.0)
-    return with_error(known.value + loose.value, error, math.inf, 0.95, found.trials)
+    return with_error(known.value + loose.value, error, math.inf, 0.95, trials.trials)
 
 
 def _answers_at(
-    found: LimitTrials, forecast: Floats, inside: Sequence[Bools], limits: Sequence[float], central: float
+    trials: LimitTrials, forecast: Floats, inside: Sequence[Bools], limits: Sequence[float], central: float
 ) -> tuple[list[tuple[Estimate, Estimate, Estimate, Estimate]], Estimate]:
     """Mean, its change, and both ends of the central range of a forecast `(n,)` at every limit; and the slope."""
     order = np.argsort(forecast)[: int(np.count_nonzero(~np.isnan(forecast)))]
-    y, weights, accepted = forecast[order], found.weights[order], found.accepted[order]
-    units = Units.of(y.size, None if found.replicate is None else found.replicate[order])
+    y, weights, accepted = forecast[order], trials.weights[order], trials.accepted[order]
+    units = Units.of(y.size, None if trials.replicate is None else trials.replicate[order])
     now = _mean(y, weights, accepted, units)
     made: dict[bytes, _Moved] = {}  # many limits may keep the same trials
     moved = []
@@ -149,7 +149,7 @@ def _answers_at(
         if key not in made:
             made[key] = _move(y, weights, accepted_now, units, now, central)
         moved.append(made[key])
-    slope = _slope(found, [(each.value, each.pulls) for each in moved], limits, units, accepted)
+    slope = _slope(trials, [(each.value, each.pulls) for each in moved], limits, units, accepted)
     return [each.estimates for each in moved], slope
 
 
@@ -174,14 +174,14 @@ def _move(
 
 
 def _slope(
-    found: LimitTrials,
+    trials: LimitTrials,
     means: Sequence[tuple[float, Floats]],
     limits: Sequence[float],
     units: Units,
     accepted_now: Bools,
 ) -> Estimate:
     """Return the slope of the mean, over one step on either side."""
-    index = list(limits).index(found.limit)
+    index = list(limits).index(trials.limit)
     (before, pulls), (after, more) = means[index - 1], means[index + 1]
     width = limits[index + 1] - limits[index - 1]
     return _estimate((after - before) / width, (more - pulls) / width, units, accepted_now)

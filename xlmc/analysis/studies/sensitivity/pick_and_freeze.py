@@ -103,7 +103,7 @@ def pick_and_freeze(
     numbers = sorted({number for name in chosen for number in assumptions[name]})
     a, b = (_answers(evaluator, draws, numbers, pairs, block) for draws in (first, second))
     mixed = {name: np.tile(values, together) for name, values in first.items()}
-    found: dict[str, dict[int, tuple[Estimate, Estimate]]] = {}
+    result: dict[str, dict[int, tuple[Estimate, Estimate]]] = {}
     for start in range(0, len(chosen), together):
         rows = {name: slice(k * pairs, (k + 1) * pairs) for k, name in enumerate(chosen[start : start + together])}
         for name, here in rows.items():
@@ -111,9 +111,11 @@ def pick_and_freeze(
         c = _answers(evaluator, mixed, numbers, len(rows) * pairs, block)
         for name, here in rows.items():
             mixed[name][here] = first[name]
-            found[name] = {number: sobol_indices(a[number], b[number], c[number][here]) for number in assumptions[name]}
-        progress(len(found) / len(chosen))
-    return SobolRun(pairs, found)
+            result[name] = {
+                number: sobol_indices(a[number], b[number], c[number][here]) for number in assumptions[name]
+            }
+        progress(len(result) / len(chosen))
+    return SobolRun(pairs, result)
 
 
 def _draws(model: CompiledModel, seed: int, start: int, count: int, block: int) -> dict[str, Floats]:
@@ -131,14 +133,14 @@ def _answers(
     evaluator: Evaluator, draws: Mapping[str, Floats], numbers: Sequence[int], count: int, block: int
 ) -> dict[int, Floats]:
     """Return number of a forecast -> its `(count,)` answers, NaN where it is no number."""
-    found: dict[int, list[Floats]] = {number: [] for number in numbers}
+    result: dict[int, list[Floats]] = {number: [] for number in numbers}
     for trials, part in portions(draws, count, block):
         n = trials.stop - trials.start
         evaluator.filters(part, n)
         columns = evaluator.forecasts(np.arange(n))
-        for number, values in found.items():
+        for number, values in result.items():
             values.append(columns[number].as_floats())
-    return {number: np.concatenate(values) for number, values in found.items()}
+    return {number: np.concatenate(values) for number, values in result.items()}
 
 
 def sobol_indices(a: Floats, b: Floats, c: Floats) -> tuple[Estimate, Estimate]:

@@ -63,8 +63,8 @@ class Units:
 
         The fitted line follows the trials, so the pulls hold twice that noise's variance in excess of what they should.
         """
-        found = self.error(pulls)
-        return found if np.isnan(found) else float(np.sqrt(max(found**2 - fitting**2, fitting**2)))
+        value = self.error(pulls)
+        return value if np.isnan(value) else float(np.sqrt(max(value**2 - fitting**2, fitting**2)))
 
     def estimate(self, value: float, error: float) -> Estimate:
         """Return a value with its 95 % interval; without an error where there is none."""

@@ -98,15 +98,15 @@ class Ranked:
         """`(n,)` for each trial the sum over n of amounts that sum to 0, at larger values, and half at equal ones."""
         first, end = self.ties
         reached = np.concatenate([[0.0], np.cumsum(amounts[self.order])])
-        found = np.empty(self.n)
-        found[self.order] = -(reached[first] + reached[end]) / (2.0 * self.n)
-        return found
+        values = np.empty(self.n)
+        values[self.order] = -(reached[first] + reached[end]) / (2.0 * self.n)
+        return values
 
     @cached_property
     def pulls(self) -> Floats:
         """`(n,)` of the spread: see `given_data.rank_correlation`."""
-        found = self.grades**2 + 2.0 * self.above(self.grades)
-        return np.asarray(found - found.mean())
+        values = self.grades**2 + 2.0 * self.above(self.grades)
+        return np.asarray(values - values.mean())
 
     @property
     def varies(self) -> bool:
@@ -116,9 +116,9 @@ class Ranked:
     @cached_property
     def steps(self) -> Indices:
         """`(n,)` the class of every value, of `_STEPS` at most, numbered upwards from 0."""
-        found = np.empty(self.n, np.intp)
-        found[self.order] = self._labels(_STEPS)
-        return found
+        values = np.empty(self.n, np.intp)
+        values[self.order] = self._labels(_STEPS)
+        return values
 
     def _labels(self, classes: int) -> Indices:
         """`(n,)` classes of equal probability, in ascending order of the values; equal values stay together."""

@@ -76,9 +76,9 @@ def _of_sum(tree: ir.Expression, total: ir.Expression, count: float) -> Iterator
     given = tuple(term for _, term in signed)
     if isinstance(total, ir.Call) and total.name == "SUM":
         given = total.arguments
-    found = list(_mean(tree, given))
-    if all(sign > 0 for sign, _ in signed) and found and abs(len(found[0].of) - count) < 1e-9:
-        yield from found
+    means = list(_mean(tree, given))
+    if all(sign > 0 for sign, _ in signed) and means and abs(len(means[0].of) - count) < 1e-9:
+        yield from means
 
 
 def _mean(tree: ir.Expression, given: Sequence[ir.Expression]) -> Iterator[_Mean]:
@@ -144,14 +144,14 @@ def _of_vectors(given: Sequence[ir.Expression], turn: float) -> ir.Expression:
     in_degrees = turn == _DEGREES
     sums = []
     for function in ("COS", "SIN"):
-        found: ir.Expression | None = None
+        expression: ir.Expression | None = None
         for one in given:
             angle = ir.Call("RADIANS", (one,)) if in_degrees else one
             part: ir.Expression = ir.Call(function, (angle,))
             part = ir.Call("SUMPRODUCT", (part,)) if isinstance(one, Area) else part
-            found = part if found is None else ir.Binary("+", found, part)
-        assert found is not None
-        sums.append(found)
+            expression = part if expression is None else ir.Binary("+", expression, part)
+        assert expression is not None
+        sums.append(expression)
     direction: ir.Expression = ir.Call("ATAN2", tuple(sums))
     if in_degrees:
         return ir.Call("MOD", (ir.Call("DEGREES", (direction,)), ir.Number(_DEGREES)))

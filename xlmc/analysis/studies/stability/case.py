@@ -122,9 +122,9 @@ class Case:
         squares: dict[int, Floats] = {}
         for replica in range(_REPLICAS):
             wanted = {*self.node.values()}
-            found = evaluate(self.dag, self.nodes, self.draws, keep=wanted, **how(replica))
+            result = evaluate(self.dag, self.nodes, self.draws, keep=wanted, **how(replica))
             for node in wanted:
-                off = numbers_of(found[node], self.n) - self.number(node)
+                off = numbers_of(result[node], self.n) - self.number(node)
                 with np.errstate(over="ignore"):
                     squares[node] = squares.get(node, 0.0) + np.where(np.isnan(off), 0.0, off) ** 2
         return {node: np.sqrt(square / _REPLICAS) for node, square in squares.items()}
@@ -136,11 +136,11 @@ class Case:
     @cached_property
     def users(self) -> dict[int, list[int]]:
         """Node -> the nodes that use it."""
-        found: dict[int, list[int]] = {}
+        result: dict[int, list[int]] = {}
         for node in self.nodes:
             for part in uses(formula_of(self.dag, node)):
-                found.setdefault(part, []).append(node)
-        return found
+                result.setdefault(part, []).append(node)
+        return result
 
     @cached_property
     def comparisons(self) -> list[int]:
@@ -150,13 +150,13 @@ class Case:
 
     def after(self, *nodes: int) -> list[int]:
         """Return the nodes that follow from some, each after those that it needs."""
-        found: set[int] = set()
+        result: set[int] = set()
         open_ = list(nodes)
         while open_:
-            new = [user for user in self.users.get(open_.pop(), ()) if user not in found]
-            found.update(new)
+            new = [user for user in self.users.get(open_.pop(), ()) if user not in result]
+            result.update(new)
             open_ += new
-        return sorted(found, key=self._order.__getitem__)
+        return sorted(result, key=self._order.__getitem__)
 
     @cached_property
     def _order(self) -> dict[int, int]:
@@ -175,8 +175,8 @@ class Case:
     @cached_property
     def of_inputs(self) -> dict[int, Floats]:
         """Node of a cell -> by how much it moves with the last digit of assumptions and typed numbers, `(n,)`."""
-        found = self._spread(lambda replica: {"of_inputs": RandomRounding((self._seed, _REPLICAS, replica), _MOVE)})
-        return {node: spread * (2 * DOUBLE / _MOVE) for node, spread in found.items()}
+        result = self._spread(lambda replica: {"of_inputs": RandomRounding((self._seed, _REPLICAS, replica), _MOVE)})
+        return {node: spread * (2 * DOUBLE / _MOVE) for node, spread in result.items()}
 
     @cached_property
     def term_sizes(self) -> dict[int, float]:
@@ -194,11 +194,11 @@ class Case:
 
     def scale(self, cell: Cell) -> float:
         """Return the width of a cell's central range, or its size where it hardly varies; 1 for 0."""
-        found = self.number(self.node[cell])[self.special :]
-        found = found[np.isfinite(found)]
-        if not found.size:
+        values = self.number(self.node[cell])[self.special :]
+        values = values[np.isfinite(values)]
+        if not values.size:
             return 1.0
-        low, middle, high = np.quantile(found, [0.245, 0.5, 0.755])
+        low, middle, high = np.quantile(values, [0.245, 0.5, 0.755])
         size = float(high - low)
         if size <= 1e-9 * abs(middle):
             size = abs(float(middle))
@@ -207,8 +207,8 @@ class Case:
     def exact_number(self, node: int, trial: int) -> float:
         """Return a node's value in a trial with 50 digits, as a double; NaN where it is no number."""
         if trial not in self._known:
-            found = self._exact.trial({key: float(draws[trial]) for key, draws in self.draws.items()})
-            self._known[trial] = {one: as_double(value) for one, value in found.items()}
+            result = self._exact.trial({key: float(draws[trial]) for key, draws in self.draws.items()})
+            self._known[trial] = {one: as_double(value) for one, value in result.items()}
         return self._known[trial][node]
 
     @property
@@ -265,13 +265,13 @@ class Case:
     def forecasts_of(self, cells: Iterable[Cell]) -> list[str]:
         """Return the forecasts and filters that a cell reaches."""
         wanted = set(cells)
-        found = []
+        result = []
         rows = [(row.cell, row.name) for row in self.model.forecasts]
         rows += [(row.cell, row.name) for row in self.model.filters]
         for cell, name in rows:
-            if wanted & self.upstream(cell) and name not in found:
-                found.append(name)
-        return found
+            if wanted & self.upstream(cell) and name not in result:
+                result.append(name)
+        return result
 
 
 _MOVE: Final = 2.0**-30

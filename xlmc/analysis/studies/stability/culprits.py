@@ -70,14 +70,14 @@ class Cancellation:
 
 def divisions(case: Case, cell: Cell) -> list[Division]:
     """Return the divisions of a cell's formula by what varies, the smallest divisor first."""
-    found = []
+    result = []
     for tree in case.trees.parts(cell):
         if isinstance(tree, ir.Binary) and tree.operator == "/":
             for factor in factors(tree.right)[0]:
                 one = _division(case, cell, tree, factor)
                 if one is not None:
-                    found.append(one)
-    return sorted(found, key=lambda division: division.least)
+                    result.append(one)
+    return sorted(result, key=lambda division: division.least)
 
 
 def _division(case: Case, cell: Cell, tree: ir.Expression, factor: ir.Expression) -> Division | None:
@@ -101,12 +101,12 @@ def _is_bounded(tree: ir.Expression) -> bool:
 
 def cancellation(case: Case, cell: Cell, trial: int) -> Cancellation | None:
     """Return the sum of a cell's formula of which least is left in a trial."""
-    found = [
+    cancellations = [
         Cancellation(tree, left_of(case, cell, tree, trial))
         for tree in case.trees.parts(cell)
         if isinstance(tree, ir.Binary) and tree.operator in "+-" and not _is_given(case, tree)
     ]
-    return min(found, key=lambda one: one.left, default=None)
+    return min(cancellations, key=lambda one: one.left, default=None)
 
 
 def _is_given(case: Case, tree: ir.Expression) -> bool:
@@ -175,12 +175,12 @@ def _with(case: Case, whole: int, node: int, cured: Floats, trials: Sequence[int
 
 def only_assumption(case: Case, node: int) -> str | None:
     """Return the name of the only assumption that a node depends on; None if it depends on none or several."""
-    found = {
+    result = {
         formula.name
         for part in closure(case.dag, [node])
         if isinstance(formula := formula_of(case.dag, part), Input) and formula.name in case.draws
     }
-    return found.pop() if len(found) == 1 else None
+    return result.pop() if len(result) == 1 else None
 
 
 def zeros(case: Case, node: int, key: str) -> list[float]:
@@ -199,7 +199,7 @@ def zeros(case: Case, node: int, key: str) -> list[float]:
     values = at(grid)
     with np.errstate(invalid="ignore"):
         turns = np.flatnonzero((np.sign(values[:-1]) * np.sign(values[1:]) < 0) | (values[:-1] == 0))
-    found = []
+    result = []
     for turn in turns:
         left, right = grid[turn : turn + 1].copy(), grid[turn + 1 : turn + 2].copy()
         sign = np.sign(at(left))
@@ -212,5 +212,5 @@ def zeros(case: Case, node: int, key: str) -> list[float]:
         round_ = float(f"{right[0]:.12g}")
         jumps = abs(at(left)[0] - at(right)[0]) > 1e-6 * np.nanmax(np.abs(values))
         if not jumps:
-            found.append(round_)
-    return found
+            result.append(round_)
+    return result

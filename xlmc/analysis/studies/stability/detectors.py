@@ -47,14 +47,14 @@ def heavy_tails(case: Case) -> Iterator[Finding]:
     """
     for forecast in case.model.forecasts:
         x = np.asarray(case.run[forecast.name].values)
-        if (found := heavy_tail(x)) is not None:
-            index, _ = found
-            effect = f"{_statistic(*found)} as far as these trials show: more trials do not help; report percentiles"
+        if (pair := heavy_tail(x)) is not None:
+            index, _ = pair
+            effect = f"{_statistic(*pair)} as far as these trials show: more trials do not help; report percentiles"
             yield _finding(case, Level.DOUBTFUL, forecast.cell, forecast.name, index, effect, None)
     for filter_ in case.model.filters:
         x = case.number(case.node[filter_.cell])[case.special : case.first_accepted]
-        if (found := heavy_tail(x)) is not None:
-            index, _ = found
+        if (pair := heavy_tail(x)) is not None:
+            index, _ = pair
             host = _quotient_of(case, filter_.cell)
             better = without_quotient(case, filter_, host) if host is not None else None
             effect = (
@@ -204,13 +204,13 @@ def jumps(case: Case) -> Iterator[Finding]:
 
 def _mending(case: Case) -> set[int]:
     """Return the choices that put the quadrant of an arctangent right: they jump so that the angle does not."""
-    found: set[int] = set()
+    result: set[int] = set()
     for cell in case.cells:
         for one in arctangents(case, cell):
             if (case.number(one.divisor) < 0).any():
                 for node in guards(case, one.node, one.divisor).holding:
-                    found |= {node, *uses(formula_of(case.dag, node))}
-    return found
+                    result |= {node, *uses(formula_of(case.dag, node))}
+    return result
 
 
 def _is_among(case: Case, cell: Cell, part: ir.Call, mending: set[int]) -> bool:

@@ -83,11 +83,11 @@ def stability(
         case = Case(extent, run, run.settings.seed)
         steps.can_end()
         steps.expect(len(_DETECTORS) + 1)
-        found: list[Finding] = []
+        findings: list[Finding] = []
         left = dict(_DETECTORS)
         for name, detector in steps.each(_DETECTORS.items()):
             steps.begin(name)
-            found += detector(case)
+            findings += detector(case)
             del left[name]
         cells: tuple[CellDigits, ...] = ()
         if not steps.ended:
@@ -95,7 +95,7 @@ def stability(
             cells = tuple(cell_digits(case))
         ended = steps.why_ended if left or not cells else ""
     ranked = sorted(
-        as_one(case, _first_causes(case, found), _OF_DIGITS), key=lambda finding: (finding.level, -finding.size)
+        as_one(case, _first_causes(case, findings), _OF_DIGITS), key=lambda finding: (finding.level, -finding.size)
     )
     return Stability(run, tuple(ranked), cells, _unchecked_functions(case), case.n, case.recomputed, ended, tuple(left))
 
@@ -106,21 +106,21 @@ _OF_NUMBERS: Final = frozenset({"tail", "amplification"})
 
 def _first_causes(case: Case, findings: Iterable[Finding]) -> list[Finding]:
     """Return the findings without those on numbers whose digits are wrong anyway."""
-    found = list(findings)
-    lost = [one.cell for one in found if one.level is Level.WRONG and one.kind in _OF_DIGITS]
-    reached = {cell for cell in (one.cell for one in found) if any(part in case.upstream(cell) for part in lost)}
-    return [one for one in found if one.kind not in _OF_NUMBERS or one.cell not in reached]
+    result = list(findings)
+    lost = [one.cell for one in result if one.level is Level.WRONG and one.kind in _OF_DIGITS]
+    reached = {cell for cell in (one.cell for one in result) if any(part in case.upstream(cell) for part in lost)}
+    return [one for one in result if one.kind not in _OF_NUMBERS or one.cell not in reached]
 
 
 def _unchecked_functions(case: Case) -> tuple[tuple[Cell, tuple[str, ...]], ...]:
     """Return the cells that hold functions which were not computed with 50 digits."""
     dag, whose = case.lowering.dag, owners(case.lowering)
     whose |= {node: dag.hosts[at] for node in case.dag.closed if (at := bisect_right(dag.ends, node)) < len(dag.hosts)}
-    found: dict[Cell, list[str]] = {}
+    result: dict[Cell, list[str]] = {}
     for node in sorted(case.unchecked):
         formula = dag.origins.get(node, dag.nodes[node])
         if isinstance(formula, Apply) and node in whose:
-            names = found.setdefault(whose[node], [])
+            names = result.setdefault(whose[node], [])
             if formula.function.name not in names:
                 names.append(formula.function.name)
-    return tuple((cell, tuple(names)) for cell, names in found.items())
+    return tuple((cell, tuple(names)) for cell, names in result.items())

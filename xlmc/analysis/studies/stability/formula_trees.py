@@ -48,11 +48,11 @@ class _Naming:
             if defined.sheet is not None:
                 self._local.add((defined.sheet, defined.name.casefold()))
             try:
-                found = parse_address(defined.text.replace("$", ""), "")
+                reference = parse_address(defined.text.replace("$", ""), "")
             except ValueError:
                 continue
-            if isinstance(found, Cell):
-                self._names.setdefault(found, []).append(defined)
+            if isinstance(reference, Cell):
+                self._names.setdefault(reference, []).append(defined)
 
     def of(self, cell: Cell, sheet: str) -> str | None:
         """Return the name that a formula on a sheet may use for a cell; otherwise None.
@@ -179,11 +179,11 @@ class Trees:
 
 def _as_typed(text: str) -> dict[str, str]:
     """Map references of a formula as they would be without `$` -> as they stand there."""
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for typed in _CORNERS.findall(text):
         if "$" in typed:
-            found.setdefault(typed.replace("$", "").upper(), typed.upper())
-    return found
+            result.setdefault(typed.replace("$", "").upper(), typed.upper())
+    return result
 
 
 def parts_of(tree: ir.Expression) -> Iterator[ir.Expression]:

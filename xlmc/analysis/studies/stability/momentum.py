@@ -74,11 +74,11 @@ class Momentum:
 def _known_momentum(case: Case) -> Iterator[Momentum]:
     """Every cell that is (15), either vehicle first."""
     for cell in case.cells:
-        found = _momentum(case.trees.formula(cell))
-        if found is not None:
-            yield found
-            mass, speed = found.masses[1], found.speeds[1]  # which of two factors is which, nothing says
-            yield replace(found, masses=(found.masses[0], speed), speeds=(found.speeds[0], mass))
+        momentum = _momentum(case.trees.formula(cell))
+        if momentum is not None:
+            yield momentum
+            mass, speed = momentum.masses[1], momentum.speeds[1]  # which of two factors is which, nothing says
+            yield replace(momentum, masses=(momentum.masses[0], speed), speeds=(momentum.speeds[0], mass))
 
 
 def _momentum(tree: Tree) -> Momentum | None:
@@ -138,10 +138,10 @@ def components(case: Case, tree: Tree) -> Iterator[Tree]:
 
 def _is_change(tree: Tree, function: str) -> bool:
     """Whether it is `Vf·COS(β) - V·COS(α)`."""
-    found = terms(tree)
-    if sorted(sign for sign, _ in found) != [-1, 1]:
+    result = terms(tree)
+    if sorted(sign for sign, _ in result) != [-1, 1]:
         return False
-    return all(any(angle_of(part, function) is not None for part in factors(term)[0]) for _, term in found)
+    return all(any(angle_of(part, function) is not None for part in factors(term)[0]) for _, term in result)
 
 
 def _component(known: Momentum, vehicle: int, function: str) -> Tree:
@@ -170,8 +170,8 @@ def _component(known: Momentum, vehicle: int, function: str) -> Tree:
 
 def spin(tree: Tree) -> Tree | None:
     """(17′) for a cell that is (17), with or without a yaw rate added; None if it is not."""
-    found = terms(tree)
-    arms = [(sign, _arm(term)) for sign, term in found]
+    result = terms(tree)
+    arms = [(sign, _arm(term)) for sign, term in result]
     swept = [(sign, arm) for sign, arm in arms if arm is not None]
     if sorted(sign for sign, _ in swept) != [-1, 1]:
         return None
@@ -196,7 +196,7 @@ def spin(tree: Tree) -> Tree | None:
         factor = ir.Binary("/", factor, part)
     turn = ir.Binary("-", times(change("COS"), after.along), times(change("SIN"), after.across))
     built = times(factor, turn)
-    for (sign, term), (_, arm) in zip(found, arms, strict=True):
+    for (sign, term), (_, arm) in zip(result, arms, strict=True):
         if arm is None:
             built = ir.Binary("+" if sign > 0 else "-", built, term)
     return built

@@ -79,18 +79,18 @@ class Polynomials:
         return {((key, power),): Fraction(1)}
 
     def _inverse(self, tree: Tree) -> Polynomial:
-        found = self.of(tree)
-        if len(found) != 1:
+        polynomial = self.of(tree)
+        if len(polynomial) != 1:
             return self.atom(tree, -1)
-        ((monomial, coefficient),) = found.items()
+        ((monomial, coefficient),) = polynomial.items()
         return {tuple((key, -power) for key, power in monomial): 1 / coefficient}
 
     def sum(self, *polynomials: Polynomial) -> Polynomial:
-        found: dict[Monomial, Fraction] = {}
+        polynomial: dict[Monomial, Fraction] = {}
         for one in polynomials:
             for monomial, coefficient in one.items():
-                found[monomial] = found.get(monomial, Fraction(0)) + coefficient
-        return _clean(found)
+                polynomial[monomial] = polynomial.get(monomial, Fraction(0)) + coefficient
+        return _clean(polynomial)
 
     def scaled(self, polynomial: Polynomial, by: Fraction) -> Polynomial:
         return _clean({monomial: coefficient * by for monomial, coefficient in polynomial.items()})
@@ -99,20 +99,20 @@ class Polynomials:
         """Multiply; raises OverflowError where the product has too many terms."""
         if len(left) * len(right) > _MOST_TERMS**2:
             raise OverflowError
-        found: dict[Monomial, Fraction] = {}
+        polynomial: dict[Monomial, Fraction] = {}
         for one, a in left.items():
             for other, b in right.items():
                 monomial = _join((one, other))
-                found[monomial] = found.get(monomial, Fraction(0)) + a * b
-        if len(found) > _MOST_TERMS:
+                polynomial[monomial] = polynomial.get(monomial, Fraction(0)) + a * b
+        if len(polynomial) > _MOST_TERMS:
             raise OverflowError
-        return _clean(found)
+        return _clean(polynomial)
 
     def power(self, polynomial: Polynomial, power: int) -> Polynomial:
-        found: Polynomial = {ONE: Fraction(1)}
+        result: Polynomial = {ONE: Fraction(1)}
         for _ in range(power):
-            found = self.product(found, polynomial)
-        return found
+            result = self.product(result, polynomial)
+        return result
 
     def split(self, polynomial: Polynomial, key: str, power: int) -> tuple[Polynomial, Polynomial] | None:
         """`K` and `R` of `K·atom^power + R`; None if the atom stands there in another power, or not at all."""
@@ -129,7 +129,7 @@ class Polynomials:
 
     def without_roots(self, polynomial: Polynomial) -> Polynomial:
         """Replace `SQRT(a)^2` by `a` in the polynomial."""
-        found: Polynomial = {}
+        result: Polynomial = {}
         for monomial, coefficient in polynomial.items():
             term: Polynomial = {ONE: coefficient}
             for key, power in monomial:
@@ -138,8 +138,8 @@ class Polynomials:
                     term = self.product(term, self.power(self.of(atom.arguments[0]), power // 2))
                     power %= 2
                 term = self.product(term, {_join([((key, power),)]): Fraction(1)})
-            found = self.sum(found, term)
-        return found
+            result = self.sum(result, term)
+        return result
 
     def tree(self, polynomial: Polynomial) -> Tree:
         """Write the polynomial as a formula, with what is added before what is subtracted."""

@@ -97,32 +97,32 @@ def lost_quadrants(case: Case) -> Iterator[Finding]:
     take only its tangent. A formula in which the angle is meant to be of another size cannot be told from others.
     """
     for cell in case.cells:
-        for found in arctangents(case, cell):
-            negative: Bools = np.asarray(case.number(found.divisor) < 0)
-            if negative.any() and case.node[cell] in guards(case, found.node, found.divisor).lost:
-                yield _finding(case, cell, found, negative)
+        for arctangent in arctangents(case, cell):
+            negative: Bools = np.asarray(case.number(arctangent.divisor) < 0)
+            if negative.any() and case.node[cell] in guards(case, arctangent.node, arctangent.divisor).lost:
+                yield _finding(case, cell, arctangent, negative)
 
 
-def _finding(case: Case, cell: Cell, found: Arctangent, negative: Bools) -> Finding:
+def _finding(case: Case, cell: Cell, arctangent: Arctangent, negative: Bools) -> Finding:
     accepted = negative[case.first_accepted :]
     among = accepted if accepted.any() else negative
     share = float(among.mean())
     tree = case.trees.formula(cell)
-    divisor = case.trees.text(found.below, cell)
+    divisor = case.trees.text(arctangent.below, cell)
     trials = "accepted trials" if accepted.any() else "trials drawn, none of them accepted"
     how_many = f"in every one of the {trials}" if share == 1.0 else f"in {styled_text(share, '.1%')} of the {trials}"
     half = "180°" if any(isinstance(one, ir.Call) and one.name == "DEGREES" for one in case.trees.parts(cell)) else "π"
-    better = with_quadrant(tree, found.tree, found.above, found.below)
+    better = with_quadrant(tree, arctangent.tree, arctangent.above, arctangent.below)
     return Finding(
         Level.WRONG if accepted.any() else Level.DOUBTFUL,
         "quadrant",
         cell,
         case.trees.title(cell),
         case.trees.written_formula(cell),
-        f"{case.trees.text(found.tree, cell)} loses the quadrant: as the direction of a vector it is {half} off "
+        f"{case.trees.text(arctangent.tree, cell)} loses the quadrant: as the direction of a vector it is {half} off "
         f"wherever {divisor} is negative",
         f"{how_many} {divisor} is negative: there the direction is wrong by {half}, and no error is shown",
-        () if share == 1.0 else case.where(negative, found.divisor),
+        () if share == 1.0 else case.where(negative, arctangent.divisor),
         case.trees.offer_formula(better, cell),
         (180.0 if half == "180°" else np.pi) * share / case.scale(cell),
     )
@@ -174,8 +174,8 @@ def _tells(case: Case, node: int, negative: Bools) -> bool:
     value = case.values[node]
     if isinstance(value, Ragged) or value.numbers.ndim != 1 or value.has_errors:
         return False
-    found = np.broadcast_to(value.numbers, negative.shape) != 0
-    return bool((found == negative).all() or (found != negative).all())
+    result = np.broadcast_to(value.numbers, negative.shape) != 0
+    return bool((result == negative).all() or (result != negative).all())
 
 
 class _Trial:
@@ -252,7 +252,7 @@ def _same(one: Value, other: Value, turn: float) -> bool:
     return bool((np.abs(off) <= _ALIKE * size).all())
 
 
-def _usual(found: Floats) -> float:
+def _usual(values: Floats) -> float:
     """Return the size of most of a node's numbers: beside it, what is left of a 0 by rounding is nothing."""
-    sizes = np.abs(found[np.isfinite(found)])
+    sizes = np.abs(values[np.isfinite(values)])
     return float(np.median(sizes)) if sizes.size else 0.0

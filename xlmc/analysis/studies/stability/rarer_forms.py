@@ -61,9 +61,9 @@ class Form:
     only_if: Tree | None = None
 
 
-def calls(found: Polynomial, algebra: Polynomials, name: str) -> list[tuple[str, Tree]]:
+def calls(polynomial: Polynomial, algebra: Polynomials, name: str) -> list[tuple[str, Tree]]:
     """Return the atoms of a polynomial that call a function: their keys and arguments."""
-    keys = {key: algebra.atoms[key] for monomial in found for key, _ in monomial}
+    keys = {key: algebra.atoms[key] for monomial in polynomial for key, _ in monomial}
     return [
         (key, atom.arguments[0])
         for key, atom in keys.items()
@@ -115,10 +115,10 @@ def of_one_and(name: str, u: Tree, x: Tree) -> Tree:
     return ir.Call("IF", (ir.Binary("=", u, UNIT), at_one, near))
 
 
-def of_small_angle(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+def of_small_angle(_: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
     """Write a steady form of `x-SIN(x)`."""
-    for key, x in calls(found, algebra, "SIN"):
-        split = algebra.split(found, key, 1)
+    for key, x in calls(polynomial, algebra, "SIN"):
+        split = algebra.split(polynomial, key, 1)
         if split is None:
             continue
         of, rest = split
@@ -140,11 +140,11 @@ def _series(x: Tree) -> Tree:
     return times(ir.Binary("/", ir.Binary("^", x, ir.Number(3.0)), ir.Number(6.0)), built)
 
 
-def of_growth(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+def of_growth(_: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
     """Write a steady form of `(1+x)^n-1`."""
-    for key in dict.fromkeys(key for monomial in found for key, _ in monomial):
+    for key in dict.fromkeys(key for monomial in polynomial for key, _ in monomial):
         atom = algebra.atoms[key]
-        split = algebra.split(found, key, 1)
+        split = algebra.split(polynomial, key, 1)
         if not isinstance(atom, ir.Binary) or atom.operator != "^" or split is None or algebra.sum(*split):
             continue
         try:
@@ -156,10 +156,10 @@ def of_growth(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form
             yield Form(scaled(algebra, split[0], less_one(times(atom.right, of_one_and("LN", atom.left, x)))))
 
 
-def of_hyperbolic_cosine(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+def of_hyperbolic_cosine(_: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
     """Write a steady form of `COSH(x)-1`."""
-    for key, x in calls(found, algebra, "COSH"):
-        split = algebra.split(found, key, 1)
+    for key, x in calls(polynomial, algebra, "COSH"):
+        split = algebra.split(polynomial, key, 1)
         if split is not None and not algebra.sum(*split):
             yield Form(scaled(algebra, split[0], squared(ir.Call("SINH", (half(x),))), 2))
 
@@ -176,14 +176,14 @@ def of_arccosine(
     """
     u = _without_bounds(part.arguments[0])
     try:
-        found = algebra.of(u)
+        polynomial = algebra.of(u)
     except OverflowError:
         return
-    great = _great_circle(found, algebra)
+    great = _great_circle(polynomial, algebra)
     if great is not None:
         yield Form(_of_haversine(great))
-    left = algebra.sum({ONE: Fraction(1)}, algebra.scaled(found, Fraction(-1)))
-    if len(left) < len(found) + 1:
+    left = algebra.sum({ONE: Fraction(1)}, algebra.scaled(polynomial, Fraction(-1)))
+    if len(left) < len(polynomial) + 1:
         yield Form(_of_haversine(ir.Binary("/", algebra.tree(left), TWO)))
     for form in of_sum(ir.Binary("-", UNIT, u), algebra):
         above = algebra.tree(form.above) if isinstance(form.above, Mapping) else form.above
@@ -208,14 +208,14 @@ def _without_bounds(u: Tree) -> Tree:
     return u
 
 
-def _great_circle(found: Polynomial, algebra: Polynomials) -> Tree | None:
+def _great_circle(polynomial: Polynomial, algebra: Polynomials) -> Tree | None:
     """Write the haversine of `SIN(a)·SIN(b)+COS(a)·COS(b)·COS(c)`, or with SIN and COS of a and b the other way round.
 
     None if it is something else.
     """
-    if len(found) != 2 or any(size != 1 for size in found.values()):
+    if len(polynomial) != 2 or any(size != 1 for size in polynomial.values()):
         return None
-    short, long = sorted(found, key=_degree)
+    short, long = sorted(polynomial, key=_degree)
     for name, other in (("SIN", "COS"), ("COS", "SIN")):
         pair, rest = _arguments(short, name, algebra), _arguments(long, other, algebra)
         between = [one for one in _arguments(long, "COS", algebra) if other == "SIN" or one not in pair]
@@ -236,9 +236,9 @@ def _degree(monomial: Monomial) -> int:
 
 def _arguments(monomial: Monomial, name: str, algebra: Polynomials) -> list[Tree]:
     """Return the arguments of the calls of a function that a monomial has for factors."""
-    found: list[Tree] = []
+    result: list[Tree] = []
     for key, power in monomial:
         atom = algebra.atoms[key]
         if isinstance(atom, ir.Call) and atom.name == name:
-            found += [atom.arguments[0]] * power
-    return found
+            result += [atom.arguments[0]] * power
+    return result

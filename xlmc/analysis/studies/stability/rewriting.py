@@ -64,10 +64,10 @@ def without_cosine(case: Case, cell: Cell, cosine: ir.Expression) -> ir.Expressi
     if cosine not in below or own is None or len(above) != 1:
         return None
     mass = [part for part in below if part != cosine]
-    found = [_term(sign, term) for sign, term in terms(above[0])]
-    if len(found) != 3 or len(mass) != 1 or any(term is None or term.below for term in found):
+    result = [_term(sign, term) for sign, term in terms(above[0])]
+    if len(result) != 3 or len(mass) != 1 or any(term is None or term.below for term in result):
         return None
-    known = [term for term in found if term is not None]
+    known = [term for term in result if term is not None]
     own_departure = [term for term in known if term.sign > 0 and mass[0] in term.masses]
     approach = [term for term in known if term.sign < 0]
     other = [term for term in known if term.sign > 0 and mass[0] not in term.masses]
@@ -156,11 +156,11 @@ def same(case: Case, cell: Cell, tree: ir.Expression, digits: int = 30) -> bool:
     compared = 0
     for trial in np.linspace(case.special, case.n - 1, _TRIALS).astype(int):
         for away in (1.0, _AWAY):
-            found = exact.trial({key: float(draws[trial]) * away for key, draws in case.draws.items()})
-            wanted = found[old]
+            result = exact.trial({key: float(draws[trial]) * away for key, draws in case.draws.items()})
+            wanted = result[old]
             if np.isnan(as_double(wanted)):
                 continue
             compared += 1
-            if np.isnan(as_double(found[node])) or abs(found[node] - wanted) > abs(wanted) * 10.0**-digits:
+            if np.isnan(as_double(result[node])) or abs(result[node] - wanted) > abs(wanted) * 10.0**-digits:
                 return False
     return compared > 0

@@ -86,14 +86,14 @@ class _Loss:
 
 
 def _losses(case: Case) -> dict[Cell, _Loss]:
-    found = {}
+    result = {}
     for cell in case.cells:
         error = case.errors[case.node[cell]]
         inherent = case.inherent(cell)
         with np.errstate(all="ignore"):
             excess = np.where((inherent > 0) & np.isfinite(inherent), error / inherent, 0.0)
-        found[cell] = _Loss(cell, error / _size(case, cell), excess)
-    return found
+        result[cell] = _Loss(cell, error / _size(case, cell), excess)
+    return result
 
 
 def _size(case: Case, cell: Cell) -> Floats:
@@ -145,14 +145,14 @@ def _off(case: Case, cell: Cell) -> tuple[float, float, float]:
     it shows, and what it is. A 0 that rounding has moved is not off.
     """
     node = case.node[cell]
-    found = []
+    result = []
     for trial in _some_trials(case, _WORST):
         shown, exact = float(case.number(node)[trial]), case.exact_number(node, trial)
         size = max(abs(shown), abs(exact))
         is_zero = exact == 0.0 and abs(shown) <= DUST * case.term_sizes[node]
         if np.isfinite(size):
-            found.append((0.0 if is_zero or not size else abs(shown - exact) / size, shown, exact))
-    return sorted(found)[len(found) // 2] if found else (0.0, 0.0, 0.0)
+            result.append((0.0 if is_zero or not size else abs(shown - exact) / size, shown, exact))
+    return sorted(result)[len(result) // 2] if result else (0.0, 0.0, 0.0)
 
 
 def _of_absorbed(case: Case, cell: Cell, answer: Cell) -> Finding:
@@ -220,12 +220,12 @@ def _finding(case: Case, loss: _Loss, by_form: bool) -> Finding | None:
 def _where(case: Case, loss: _Loss, by_form: bool) -> Bools:
     """Return the trials that show it: those near the worst, but not too few of those drawn at random."""
     measure, least, near = (loss.excess, _EXCESS, 0.3) if by_form else (loss.error, _VISIBLE, 0.1)
-    found = np.asarray(measure >= max(least, near * float(np.nanmax(measure))))
+    mask = np.asarray(measure >= max(least, near * float(np.nanmax(measure))))
     drawn = np.nan_to_num(measure[case.special :])
-    if found[case.special :].sum() < _SHOWING and drawn.size:
+    if mask[case.special :].sum() < _SHOWING and drawn.size:
         some = np.sort(drawn)[-min(_SHOWING, drawn.size)]
-        found[case.special :] |= drawn >= max(least, some)
-    return found
+        mask[case.special :] |= drawn >= max(least, some)
+    return mask
 
 
 def _is_missing_before(case: Case, cell: Cell, trial: int) -> bool:

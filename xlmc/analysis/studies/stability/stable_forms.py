@@ -63,16 +63,16 @@ def forms(part: Tree, algebra: Polynomials) -> Iterator[Form]:
 
 def _of_sum(part: Tree, algebra: Polynomials) -> Iterator[Form]:
     try:
-        found = algebra.of(part)
+        polynomial = algebra.of(part)
     except OverflowError:
         return
     for rule in _RULES:
-        yield from rule(part, found, algebra)
+        yield from rule(part, polynomial, algebra)
 
 
-def _of_cosine(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    for key, angle in calls(found, algebra, "COS"):
-        split = algebra.split(found, key, 1)
+def _of_cosine(_: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+    for key, angle in calls(polynomial, algebra, "COS"):
+        split = algebra.split(polynomial, key, 1)
         if split is None:
             continue
         of, rest = split
@@ -87,17 +87,17 @@ def _of_cosine(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[For
             yield Form(scaled(algebra, of, squared(ir.Call("SIN", (half(_short_of(angle, 180.0)),))), 2))
 
 
-def _of_squares(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+def _of_squares(_: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
     for name, other in (("SIN", "COS"), ("COS", "SIN")):
-        for key, angle in calls(found, algebra, name):
-            split = algebra.split(found, key, 2)
+        for key, angle in calls(polynomial, algebra, name):
+            split = algebra.split(polynomial, key, 2)
             if split is not None and not algebra.sum(*split):
                 yield Form(scaled(algebra, split[1], squared(ir.Call(other, (angle,)))))
 
 
-def _of_sine(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    for key, angle in calls(found, algebra, "SIN"):
-        split = algebra.split(found, key, 1)
+def _of_sine(_: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+    for key, angle in calls(polynomial, algebra, "SIN"):
+        split = algebra.split(polynomial, key, 1)
         if split is not None and not algebra.sum(*split):
             yield Form(scaled(algebra, split[1], squared(ir.Call("SIN", (half(_short_of(angle, 90.0)),))), 2))
 
@@ -113,43 +113,43 @@ def _short_of(angle: Tree, degrees: float) -> Tree:
             return ir.Binary("-", turn, angle)
 
 
-def _opposite(found: Polynomial, algebra: Polynomials, name: str) -> Iterator[tuple[Polynomial, Tree, Tree]]:
+def _opposite(polynomial: Polynomial, algebra: Polynomials, name: str) -> Iterator[tuple[Polynomial, Tree, Tree]]:
     """`K`, a and b of `K·f(a) - K·f(b)`."""
-    called = calls(found, algebra, name)
+    called = calls(polynomial, algebra, name)
     for key, first in called:
         for other, second in called:
-            one = algebra.split(found, key, 1) if key != other else None
+            one = algebra.split(polynomial, key, 1) if key != other else None
             two = algebra.split(one[1], other, 1) if one is not None else None
             if one is not None and two is not None and not two[1] and not algebra.sum(one[0], two[0]):
                 yield one[0], first, second
 
 
-def _of_angles(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+def _of_angles(_: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
     def ofhalf(name: str, a: Tree, b: Tree, sign: int) -> Tree:
         return ir.Call(name, (half(combined(a, b, sign, algebra)),))
 
-    for factor, a, b in _opposite(found, algebra, "COS"):
+    for factor, a, b in _opposite(polynomial, algebra, "COS"):
         yield Form(scaled(algebra, factor, times(ofhalf("SIN", a, b, 1), ofhalf("SIN", b, a, -1)), 2))
-    for factor, a, b in _opposite(found, algebra, "SIN"):
+    for factor, a, b in _opposite(polynomial, algebra, "SIN"):
         yield Form(scaled(algebra, factor, times(ofhalf("COS", a, b, 1), ofhalf("SIN", a, b, -1)), 2))
-    for factor, a, b in _opposite(found, algebra, "TAN"):
+    for factor, a, b in _opposite(polynomial, algebra, "TAN"):
         below = times(ir.Call("COS", (a,)), ir.Call("COS", (b,)))
         yield Form(scaled(algebra, factor, ir.Call("SIN", (combined(a, b, -1, algebra),))), below)
 
 
-def _of_exponential(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    for key, x in calls(found, algebra, "EXP"):
-        split = algebra.split(found, key, 1)
+def _of_exponential(_: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+    for key, x in calls(polynomial, algebra, "EXP"):
+        split = algebra.split(polynomial, key, 1)
         if split is not None and not algebra.sum(*split):
             if split[0] == {ONE: Fraction(-1)}:
                 yield Form(less_one(x, negative=True))
             else:
                 yield Form(scaled(algebra, split[0], less_one(x)))
-    for factor, a, b in _opposite(found, algebra, "EXP"):
+    for factor, a, b in _opposite(polynomial, algebra, "EXP"):
         change = algebra.tree(algebra.sum(algebra.of(a), algebra.scaled(algebra.of(b), Fraction(-1))))
         yield Form(scaled(algebra, factor, times(ir.Call("EXP", (b,)), less_one(change))))
-    for key, x in calls(found, algebra, "TANH"):
-        split = algebra.split(found, key, 1)
+    for key, x in calls(polynomial, algebra, "TANH"):
+        split = algebra.split(polynomial, key, 1)
         if split is not None and not algebra.sum(*split):
             below = ir.Binary("+", ir.Call("EXP", (times(TWO, x),)), UNIT)
             yield Form(algebra.scaled(split[1], Fraction(2)), below)
@@ -158,11 +158,11 @@ def _of_exponential(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterato
 def _of_logarithm(part: ir.Call, algebra: Polynomials) -> Iterator[Form]:
     u, *base = part.arguments
     try:
-        found = algebra.of(u)
+        polynomial = algebra.of(u)
     except OverflowError:
         return
-    if len(found) > 1 and found.get(ONE) == 1:
-        x = algebra.tree({monomial: coefficient for monomial, coefficient in found.items() if monomial != ONE})
+    if len(polynomial) > 1 and polynomial.get(ONE) == 1:
+        x = algebra.tree({monomial: coefficient for monomial, coefficient in polynomial.items() if monomial != ONE})
         yield Form(*_to_base(part.name, base, lambda name: of_one_and(name, u, x)))
     if isinstance(u, ir.Binary) and u.operator == "/":
         change = _change(u.left, u.right, algebra)
@@ -184,15 +184,15 @@ def _of_ratio(name: str, a: Tree, b: Tree, algebra: Polynomials) -> Tree:
     return of_one_and(name, ir.Binary("/", a, b), ir.Binary("/", _change(a, b, algebra), b))
 
 
-def _of_logarithms(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+def _of_logarithms(_: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
     for name in ("LN", "LOG10"):
-        for factor, a, b in _opposite(found, algebra, name):
+        for factor, a, b in _opposite(polynomial, algebra, name):
             yield Form(scaled(algebra, factor, _of_ratio(name, a, b, algebra)))
 
 
-def _of_root(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    for key, inside in calls(found, algebra, "SQRT"):
-        split = algebra.split(found, key, 1)
+def _of_root(_: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+    for key, inside in calls(polynomial, algebra, "SQRT"):
+        split = algebra.split(polynomial, key, 1)
         if split is None or not split[1]:
             continue
         of, rest = split
@@ -222,7 +222,7 @@ def _areas(tree: Tree) -> list[Area]:
     return list(dict.fromkeys(part for part in parts_of(tree) if isinstance(part, Area)))
 
 
-def _of_variance(part: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+def _of_variance(part: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
     areas = _areas(part)
     if len(areas) == 1:
         count = ir.Call("COUNT", (areas[0],))
@@ -233,7 +233,7 @@ def _of_variance(part: Tree, found: Polynomial, algebra: Polynomials) -> Iterato
         yield Form(mean)
         yield Form(times(count, mean))
         yield Form(times(squared(count), mean))
-    squares = [monomial[0][0] for monomial in found if len(monomial) == 1 and monomial[0][1] == 2]
+    squares = [monomial[0][0] for monomial in polynomial if len(monomial) == 1 and monomial[0][1] == 2]
     if len(squares) > 1 and not areas:
         single = ir.Call("DEVSQ", tuple(algebra.atoms[key] for key in squares))
         yield from _times_counts(single, ir.Number(float(len(squares))))
@@ -247,10 +247,10 @@ def _times_counts(tree: Tree, count: Tree) -> Iterator[Form]:
     yield Form(tree, less)
 
 
-def _of_fractions(_: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    divisors = sorted({key for monomial in found for key, power in monomial if power == -1})
-    if divisors and len(found) > 1:
-        above = found
+def _of_fractions(_: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+    divisors = sorted({key for monomial in polynomial for key, power in monomial if power == -1})
+    if divisors and len(polynomial) > 1:
+        above = polynomial
         for key in divisors:
             above = algebra.product(above, algebra.atom(algebra.atoms[key]))
         plain: Polynomial = {}
@@ -269,9 +269,9 @@ def _as_polynomial(algebra: Polynomials, key: str) -> Polynomial:
     return algebra.of(algebra.atoms[key])
 
 
-def _of_what_is_left(part: Tree, found: Polynomial, algebra: Polynomials) -> Iterator[Form]:
-    if len(found) < sum(len(algebra.of(term)) for _, term in terms(part)):
-        yield Form(found)
+def _of_what_is_left(part: Tree, polynomial: Polynomial, algebra: Polynomials) -> Iterator[Form]:
+    if len(polynomial) < sum(len(algebra.of(term)) for _, term in terms(part)):
+        yield Form(polynomial)
 
 
 _RULES: Final[tuple[Callable[[Tree, Polynomial, Polynomials], Iterator[Form]], ...]] = (

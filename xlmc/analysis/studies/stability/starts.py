@@ -33,11 +33,11 @@ def dependence_on_starts(case: Case) -> Iterator[Finding]:
     for circle in case.lowering.iterated:
         moved = {forecast.name: np.zeros(case.n) for forecast in case.model.forecasts}
         for start in _other_starts(case, circle):
-            found = evaluate_changes(case.dag, case.nodes, case.values, {circle.start: start})
+            result = evaluate_changes(case.dag, case.nodes, case.values, {circle.start: start})
             for forecast in case.model.forecasts:
                 node = case.node[forecast.cell]
-                if node in found:
-                    by = _difference(case.number(node), numbers_of(found[node], case.n)) / case.scale(forecast.cell)
+                if node in result:
+                    by = _difference(case.number(node), numbers_of(result[node], case.n)) / case.scale(forecast.cell)
                     moved[forecast.name] = np.fmax(moved[forecast.name], by)
         name = max(moved, key=lambda name: float(np.max(moved[name])), default="")
         if name and float(np.max(moved[name])) > _VISIBLE:

@@ -104,17 +104,17 @@ def _product(tree: ir.Expression, part: ir.Expression) -> ir.Expression | None:
 
 def _draw_in(whole: ir.Expression, part: ir.Expression, above: Polynomial, algebra: Polynomials) -> Polynomial | None:
     """Return what stands above the line, times the other factors; None if these are sums."""
-    found = above
+    polynomial = above
     others, below = factors(whole)
     for one in others:
         if one is not part:
-            found = algebra.product(found, algebra.of(one))
+            polynomial = algebra.product(polynomial, algebra.of(one))
     for one in below:
         divisor = algebra.of(one)
         if len(divisor) != 1:
             return None
-        found = algebra.product(found, algebra.of(ir.Binary("/", ir.Number(1.0), one)))
-    return found
+        polynomial = algebra.product(polynomial, algebra.of(ir.Binary("/", ir.Number(1.0), one)))
+    return polynomial
 
 
 def _is_better(case: Case, cell: Cell, tree: ir.Expression, worst: Sequence[int]) -> bool:
@@ -151,8 +151,8 @@ def _corners(case: Case, node: int) -> dict[str, Floats]:
     needed = [key for key in case.names if key in case.inputs_of(node)]
     ends = [sorted({float(case.draws[key].min()), float(case.draws[key].max()), *_zero(case, key)}) for key in needed]
     rows = list(product(*ends)) if len(needed) <= _MOST_RANGES else [*zip(*((e[0], e[-1]) for e in ends), strict=True)]
-    found = {key: np.full(len(rows), draw[0]) for key, draw in case.draws.items()}
-    return found | {key: np.array([row[at] for row in rows]) for at, key in enumerate(needed)}
+    result = {key: np.full(len(rows), draw[0]) for key, draw in case.draws.items()}
+    return result | {key: np.array([row[at] for row in rows]) for at, key in enumerate(needed)}
 
 
 def _zero(case: Case, key: str) -> tuple[float, ...]:

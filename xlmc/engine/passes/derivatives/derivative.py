@@ -143,8 +143,8 @@ class Notes:
         self.names[node] = name
         if jumps:
             self.jumping.add(node)
-        found, counts = np.unique(np.asarray(branches, np.float64), return_counts=True)
-        self.branches[node].update(dict(zip(found.tolist(), counts.tolist(), strict=True)))
+        values, counts = np.unique(np.asarray(branches, np.float64), return_counts=True)
+        self.branches[node].update(dict(zip(values.tolist(), counts.tolist(), strict=True)))
 
     def lose(self, node: int, name: str, why: str, trials: Bools, start: int) -> None:
         """Note that a function lost the derivatives in these trials of a portion that starts at `start`."""
@@ -163,25 +163,25 @@ class Notes:
 
     def kinks(self, owners: Mapping[int, Cell]) -> tuple[Kink, ...]:
         """List the functions that took more than one branch, the most evenly divided first."""
-        found = []
+        result = []
         for node, branches in self.branches.items():
             if len(branches) > 1:
                 share = 1 - max(branches.values()) / branches.total()
-                found.append(Kink(owners[node], self.names[node], len(branches), share, node in self.jumping))
-        return tuple(sorted(found, key=lambda kink: -kink.share))
+                result.append(Kink(owners[node], self.names[node], len(branches), share, node in self.jumping))
+        return tuple(sorted(result, key=lambda kink: -kink.share))
 
     def undefined(self, owners: Mapping[int, Cell], concerned: Iterable[int]) -> tuple[Undefined, ...]:
         """List the places without a derivative, in trials that concern a cell that was asked for; most trials first."""
         those = np.fromiter(concerned, np.intp)
-        found = []
+        results = []
         for node, reasons in self.lost.items():
             for why, parts in reasons.items():
                 trials = np.intersect1d(np.concatenate(parts), those)
                 if trials.size:
-                    found.append(Undefined(owners[node], self.names[node], why, int(trials.size), int(trials[0])))
-        return tuple(sorted(found, key=lambda each: -each.trials))
+                    results.append(Undefined(owners[node], self.names[node], why, int(trials.size), int(trials[0])))
+        return tuple(sorted(results, key=lambda each: -each.trials))
 
     def numerical(self, owners: Mapping[int, Cell]) -> tuple[Numerical, ...]:
         """List the functions without a rule, the least certain first."""
-        found = [Numerical(owners[node], self.names[node], error) for node, error in self.errors.items()]
-        return tuple(sorted(found, key=lambda each: -np.nan_to_num(each.error)))
+        results = [Numerical(owners[node], self.names[node], error) for node, error in self.errors.items()]
+        return tuple(sorted(results, key=lambda each: -np.nan_to_num(each.error)))

@@ -179,7 +179,7 @@ def chain(x: Floats, jets: Sequence[Jet], firsts: Sequence[Any], seconds: Second
 
 def _curves(wide: Mapping[int, Jet], seconds: Mapping[tuple[int, int], Any]) -> list[tuple[Floats, Floats | None]]:
     """Return the terms of the function's own second derivatives, and the errors of these terms."""
-    found = []
+    result = []
     for (i, j), second in seconds.items():
         nothing = isinstance(second, float) and second == 0.0
         if i in wide and j in wide and not nothing:
@@ -189,8 +189,8 @@ def _curves(wide: Mapping[int, Jet], seconds: Mapping[tuple[int, int], Any]) -> 
             if i != j:
                 curve = curve + curve.swapaxes(0, 1)
                 error = None if error is None else error + error.swapaxes(0, 1)
-            found.append((curve, error))
-    return found
+            result.append((curve, error))
+    return result
 
 
 def _outer(left: Floats, right: Floats) -> Floats:

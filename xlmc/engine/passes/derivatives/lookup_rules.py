@@ -54,10 +54,10 @@ class Drawer(NamedTuple):
             tags.append(_tag(operand.value, numbers))
         return cls(concatenate(jets, n), tags)
 
-    def draw(self, found: Value, result: Value) -> Jet:
+    def draw(self, value: Value, result: Value) -> Jet:
         """Return the cells that a function found among the tags, as its result."""
-        cells = np.where(found.kinds == NUMBER, found.numbers, 0.0)
-        cells = np.broadcast_to(cells, found.shape).astype(np.intp)
+        cells = np.where(value.kinds == NUMBER, value.numbers, 0.0)
+        cells = np.broadcast_to(cells, value.shape).astype(np.intp)
         n = max(cells.shape[0], self.cells.x.shape[0])
         trials = np.arange(n).reshape(n, *(1,) * (cells.ndim - 1))
 
@@ -85,7 +85,7 @@ def match(function: Function, result: Value, operands: Sequence[Operand]) -> Out
     return Outcome(constant_jet(result, level_jets([operands[0]]), step), result.numbers)
 
 
-def _steps(call: Callable[[Values], Value], found: Value, values: Values) -> Bools:
+def _steps(call: Callable[[Values], Value], value: Value, values: Values) -> Bools:
     """Find the trials in which a key that differs in the 15th digit finds another cell; where it finds none, the key is
     a label.
     """
@@ -93,20 +93,20 @@ def _steps(call: Callable[[Values], Value], found: Value, values: Values) -> Boo
     for nudge in (1 - _NEAR, 1 + _NEAR):
         key = replace(values[0], numbers=values[0].numbers * nudge)
         other = call([key, *values[1:]])
-        step = step | ((other.numbers != found.numbers) & (other.kinds < ERROR))
+        step = step | ((other.numbers != value.numbers) & (other.kinds < ERROR))
     return step
 
 
 def _look_up(call: Callable[[Values], Value], result: Value, operands: Sequence[Operand], drawer: Drawer) -> Outcome:
     """Return the cell that a call finds among tags, by the first operand as a key."""
     values = [operand.value for operand in operands]
-    found = call(values)
-    jet = drawer.draw(found, result)
+    value = call(values)
+    jet = drawer.draw(value, result)
     key = operands[0].jet
     if key.active:
         level = key.as_range() if jet.x.ndim == 3 else key
-        jet = replace(jet + constant_jet(result, [level], _steps(call, found, values)), x=result.numbers)
-    return Outcome(_without(jet, operands[2:]), found.numbers)
+        jet = replace(jet + constant_jet(result, [level], _steps(call, value, values)), x=result.numbers)
+    return Outcome(_without(jet, operands[2:]), value.numbers)
 
 
 def _without(jet: Jet, operands: Sequence[Operand]) -> Jet:
@@ -180,10 +180,10 @@ def register_moving(data: Callable[[int], Sequence[int]], *names: str, why: str 
         values = [operand.value for operand in operands]
         for index, tags in zip(moving, drawer.tags, strict=True):
             values[index] = tags
-        found = function(values)
+        value = function(values)
         rest = [operand for index, operand in enumerate(operands) if index not in moving]
-        single = found.numbers.ndim == 1
-        return Outcome(_without(drawer.draw(found, result), rest), found.numbers if single else None)
+        single = value.numbers.ndim == 1
+        return Outcome(_without(drawer.draw(value, result), rest), value.numbers if single else None)
 
     for name in names:
         RULES[name] = DerivativeRule(apply, why, jumps)

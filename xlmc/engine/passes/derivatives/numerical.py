@@ -46,10 +46,10 @@ def by_differences(function: Function, result: Value, operands: Sequence[Operand
 
     def moved(steps: Sequence[Floats | None]) -> Floats:
         values = [_moved(operand, step) for operand, step in zip(operands, steps, strict=True)]
-        found = function(values)
-        if found.numbers.shape[1:] != result.numbers.shape[1:]:
+        results = function(values)
+        if results.numbers.shape[1:] != result.numbers.shape[1:]:
             return np.full(result.shape, np.nan)
-        return np.where(found.kinds >= ERROR, np.nan, found.numbers)
+        return np.where(results.kinds >= ERROR, np.nan, results.numbers)
 
     single = [index for index in live if operands[index].value.numbers.ndim == 1]
     active = {number for index in live for number in jets[index].active}
@@ -258,13 +258,13 @@ def _along(moved: Moved, result: Value, path: _Path) -> _Along:
     for step in path.first:
         if step is not None:
             most = np.maximum(most, np.abs(step).reshape(step.shape[0], -1).max(axis=1))
-    found = _extrapolate(moved, result, path, np.ones(n))
+    along = _extrapolate(moved, result, path, np.ones(n))
     small = (most < 1) & (most >= _SMALLEST)
     if small.any():
-        found = found.or_better(_extrapolate(moved, result, path, np.where(small, 1 / most, 1.0)))
-    if not np.isfinite(found.first_error).all():
-        found = found.or_better(_extrapolate(moved, result, path, np.full(n, _FINER)))
-    return found
+        along = along.or_better(_extrapolate(moved, result, path, np.where(small, 1 / most, 1.0)))
+    if not np.isfinite(along.first_error).all():
+        along = along.or_better(_extrapolate(moved, result, path, np.full(n, _FINER)))
+    return along
 
 
 def _mixed(both: _Along, one: _Along, other: _Along, size: Floats) -> tuple[Floats, Floats]:

@@ -194,5 +194,5 @@ def _sum_of(function: Function, values: Sequence[Value], slot: int, row: Floats,
     """Call the function with other numbers in its cells; errors, which infinite numbers cause, become NaN."""
     own = Value(row, cells.value.kinds, cells.value.texts)
     given = [*values[:slot], own, *values[slot + 1 :]]
-    found = function(given)
-    return np.where(found.kinds >= ERROR, np.nan, found.numbers)
+    value = function(given)
+    return np.where(value.kinds >= ERROR, np.nan, value.numbers)

@@ -87,12 +87,12 @@ def sweep_forward(
 
 def _read_as_values(dag: Dag, nodes: Sequence[int]) -> set[int]:
     """Return the nodes that a function reads as values; conditions are mostly read by choices and other conditions."""
-    found: set[int] = set()
+    result: set[int] = set()
     for node_id in nodes:
         node = dag.nodes[node_id]
         if isinstance(node, Apply) and node.function.returns is not Kind.LOGICAL:
-            found.update(node.arguments)
-    return found
+            result.update(node.arguments)
+    return result
 
 
 def _operand(dag: Dag, node_id: int, values: Mapping[int, Value], jets: Mapping[int, Jet]) -> Operand:
@@ -240,13 +240,13 @@ def owners(lowering: Lowering) -> dict[int, Cell]:
 
     Nodes are shared: the first cell that needs one stands for all.
     """
-    found: dict[int, Cell] = {lowering.cell(cell): cell for cell in lowering.inputs}
+    result: dict[int, Cell] = {lowering.cell(cell): cell for cell in lowering.inputs}
     nodes = lowering.dag.nodes
     for cell in lowering.graph.formulas:
         open_ = [lowering.cell(cell)]
         while open_:
             node = open_.pop()
-            if node not in found:
-                found[node] = cell
+            if node not in result:
+                result[node] = cell
                 open_ += uses(nodes[node])
-    return found
+    return result

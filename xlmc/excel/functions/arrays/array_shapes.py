@@ -189,9 +189,9 @@ def _read_indices(numbers: tuple[Value, ...], size: int) -> Indices:
     """Read the indices, counted from 0, of rows or columns: (n, m) for m numbers in any number of arguments."""
     wholes, errors = [], []
     for value in numbers:
-        whole, found = whole_numbers(value)
+        whole, values = whole_numbers(value)
         wholes.append(flatten_cells(whole, value))
-        errors.append(flatten_cells(found, value))
+        errors.append(flatten_cells(values, value))
     wanted = join_cells(wholes)
     off = error_where((wanted == 0) | (np.abs(wanted) > size), ErrorCode.VALUE)
     refuse_errors(first_error(first_error_in_row(join_cells(errors)), first_error_in_row(off)))
@@ -273,6 +273,6 @@ def wrap_columns(vector: Value, count: Value, pad: Value | None = None) -> Value
 def _pick_or_pad(cells: Value, rows: Indices, columns: Indices, pad: Value | None) -> Value:
     """Pick the cells at these indices, together (1, r, c); where one lies outside, the pad or `#N/A`."""
     inside = (rows < cells.shape[1]) & (columns < cells.shape[2])
-    found = pick(cells, np.minimum(rows, cells.shape[1] - 1), np.minimum(columns, cells.shape[2] - 1))
+    value = pick(cells, np.minimum(rows, cells.shape[1] - 1), np.minimum(columns, cells.shape[2] - 1))
     missing = pad is None or bool((pad.kinds == BLANK).all())
-    return choose(inside, found, constant(ErrorCode.NA) if pad is None or missing else pad)
+    return choose(inside, value, constant(ErrorCode.NA) if pad is None or missing else pad)

@@ -88,11 +88,11 @@ def worked_days(weekend: Value) -> tuple[Bools, Codes]:
         key = (type(item), item)
         if key not in known:
             known[key] = _read_weekend(item)
-        found = known[key]
-        if isinstance(found, ErrorCode):
-            errors[index] = found
+        result = known[key]
+        if isinstance(result, ErrorCode):
+            errors[index] = result
         else:
-            worked[index] = found
+            worked[index] = result
     return worked, errors
 
 
@@ -197,10 +197,10 @@ def _move(weeks: Weeks, holidays: Floats, start: Floats, days: Floats) -> Floats
         behind = weeks.day_at_count(weeks.count_before(start) + days - passed)
         result = np.where(forward, ahead, behind)
         first, last = np.where(forward, start + 1, result), np.where(forward, result, start - 1)
-        found = _count_holidays(weeks, holidays, first, last)
-        if (found == passed).all():
+        values = _count_holidays(weeks, holidays, first, last)
+        if (values == passed).all():
             break
-        passed = found
+        passed = values
     return np.where(days == 0, start, result)
 
 

@@ -54,11 +54,11 @@ def read(item: object) -> _Read:
 
 
 def _parse(text: str) -> _Read:
-    found = _NUMBER.fullmatch(text)
-    if found is None:
+    match = _NUMBER.fullmatch(text)
+    if match is None:
         return ErrorCode.NUM
-    number = complex(_read_coefficient(found["real"]), _read_coefficient(found["imaginary"]))
-    return (number, found["suffix"] or "") if isfinite(number) else ErrorCode.NUM
+    number = complex(_read_coefficient(match["real"]), _read_coefficient(match["imaginary"]))
+    return (number, match["suffix"] or "") if isfinite(number) else ErrorCode.NUM
 
 
 def _read_coefficient(text: str | None) -> float:
@@ -70,8 +70,8 @@ def _read_coefficient(text: str | None) -> float:
 
 def common_suffix(*suffixes: str) -> str | ErrorCode:
     """Return the suffix of all numbers that have one; `#VALUE!` if some have `i` and some `j`."""
-    found = set(suffixes) - {""}
-    return ErrorCode.VALUE if len(found) > 1 else "".join(found)
+    result = set(suffixes) - {""}
+    return ErrorCode.VALUE if len(result) > 1 else "".join(result)
 
 
 def write(number: complex, suffix: str) -> str | ErrorCode:
@@ -113,8 +113,8 @@ def _register_measure(name: str, meaning: str, function: Callable[[complex], flo
     """Register a function that gives a real number for a complex one."""
 
     def measure(item: object) -> float | ErrorCode:
-        found = read(item)
-        return found if isinstance(found, ErrorCode) else function(found[0])
+        result = read(item)
+        return result if isinstance(result, ErrorCode) else function(result[0])
 
     measure.__doc__ = meaning
     excel(name, OneCell)(per_object(measure))
@@ -193,10 +193,10 @@ def _raise_to(z: complex, power: float) -> complex:
 @per_object
 def power(item: object, exponent: object) -> str | ErrorCode:
     """Raise the number to a real power."""
-    number, found = read(item), strict_number(exponent)
-    if isinstance(found, ErrorCode) and not isinstance(number, ErrorCode):
-        return found
-    return _apply(_raise_to, [number], float(found))
+    number, value = read(item), strict_number(exponent)
+    if isinstance(value, ErrorCode) and not isinstance(number, ErrorCode):
+        return value
+    return _apply(_raise_to, [number], float(value))
 
 
 def _register_fold(name: str, meaning: str, operation: Callable[[complex, complex], complex]) -> None:

@@ -169,5 +169,5 @@ def convert(number: Value, source: Value, target: Value) -> Value:
     base = (x * _part(old, "prefix") - from_zero) * _part(old, "scale")
     result = (base / _part(new, "scale") + to_zero) / _part(new, "prefix")
     groups = _groups(old)
-    found = np.where((groups == _groups(new)) & (groups != ""), result, NA)
-    return Value.of_numbers(found, first_error(errors, source.errors, target.errors))
+    values = np.where((groups == _groups(new)) & (groups != ""), result, NA)
+    return Value.of_numbers(values, first_error(errors, source.errors, target.errors))

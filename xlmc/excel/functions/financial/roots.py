@@ -28,27 +28,27 @@ def growth_root(function: Function, guess: Floats) -> Floats:
     which needs no derivative and never leaves the bracket.
     """
     start = np.log1p(np.where(guess > -1, guess, 0.0))
-    low, high, found = _bracket(function, start)
-    return np.where(found & (guess > -1), np.expm1(_close_in(function, low, high)), np.nan)
+    low, high, mask = _bracket(function, start)
+    return np.where(mask & (guess > -1), np.expm1(_close_in(function, low, high)), np.nan)
 
 
 def _bracket(function: Function, start: Floats) -> tuple[Floats, Floats, Bools]:
     """Find the interval nearest to the start in which the sign changes: its ends, and which trials have one."""
     low = high = left = right = start
     value_left = value_right = function(start)
-    found = value_left == 0
+    value = value_left == 0
     step = _FIRST_STEP
-    while step < _FARTHEST and not found.all():
+    while step < _FARTHEST and not value.all():
         new_left, new_right = start - step, start + step
         new_value_left, new_value_right = function(new_left), function(new_right)
-        at_right = ~found & _sign_changes(value_right, new_value_right)
-        at_left = ~found & ~at_right & _sign_changes(value_left, new_value_left)
+        at_right = ~value & _sign_changes(value_right, new_value_right)
+        at_left = ~value & ~at_right & _sign_changes(value_left, new_value_left)
         low = np.where(at_right, right, np.where(at_left, new_left, low))
         high = np.where(at_right, new_right, np.where(at_left, left, high))
-        found = found | at_left | at_right
+        value = value | at_left | at_right
         left, right, value_left, value_right = new_left, new_right, new_value_left, new_value_right
         step *= _WIDENING
-    return low, high, found
+    return low, high, value
 
 
 def _sign_changes(one: Floats, other: Floats) -> Bools:

@@ -58,8 +58,8 @@ def index(cells: Value, row: Value, column: Value | None = None, area: Value | N
     codes = (errors_unless_range(cells), wrong_row, wrong_column, wrong_area, off_rows, off_columns, no_area)
     many = max(row_indices.ndim, column_indices.ndim) == 3
     indices = [_spread(indices, many) for indices in (row_indices, column_indices)]
-    found = with_errors(pick(grid, *indices), first_error(*(_spread(part, many) for part in codes)))
-    return cell_of(found, 0, 0) if cells.numbers.ndim == 1 else found
+    value = with_errors(pick(grid, *indices), first_error(*(_spread(part, many) for part in codes)))
+    return cell_of(value, 0, 0) if cells.numbers.ndim == 1 else value
 
 
 def _read_one_number(number: Value, grid: Value) -> tuple[Value, Value]:
@@ -131,7 +131,7 @@ def address(
     names, wrong = sheet_.to_texts()
     parts = [*(array for array, _ in numbers), style, None if sheet is None else names]
     return with_errors(
-        per_element(_write_address)(*parts), first_error(*(found for _, found in numbers), unclear, wrong)
+        per_element(_write_address)(*parts), first_error(*(values for _, values in numbers), unclear, wrong)
     )
 
 
@@ -149,7 +149,7 @@ def _write_address(row: float, column: float, fixed: float, a1: bool, sheet: str
 
 def _quote(sheet: str) -> str:
     """Write a sheet's name as Excel does before an address; a book's name may come first: `[Book1]Sheet1`."""
-    found = _BOOK.fullmatch(sheet)
-    book, name = found.groups() if found else ("", sheet)
+    match = _BOOK.fullmatch(sheet)
+    book, name = match.groups() if match else ("", sheet)
     plain = (not name or quote_sheet(name) == name) and (not book or _PLAIN_BOOK.fullmatch(book) is not None)
     return sheet if plain else "'" + sheet.replace("'", "''") + "'"

@@ -72,10 +72,10 @@ def _classic_index(key: Value, vector: Value, order: Floats) -> Indices:
     result = np.full(1, -1)
     for wanted in np.unique(order):
         if wanted == EXACT:
-            found = nearest(key, vector, wildcards=True)
+            values = nearest(key, vector, wildcards=True)
         else:
-            found = before_first_smaller(key, vector) if wanted < 0 else last_not_beyond(key, vector)
-        result = np.where(order == wanted, found, result)
+            values = before_first_smaller(key, vector) if wanted < 0 else last_not_beyond(key, vector)
+        result = np.where(order == wanted, values, result)
     return result
 
 
@@ -130,8 +130,8 @@ def _vlookup(key: Value, table: Value, column: Value, near: Value) -> Value:
         *(error_where(columns < 1, ErrorCode.VALUE), error_where(columns > cells.shape[2], ErrorCode.REF)),
     )
     sound = errors == 0
-    found = pick(cells, np.where(sound, rows, 0), np.where(sound, columns - 1, 0).astype(np.intp))
-    return with_errors(found, errors)
+    value = pick(cells, np.where(sound, rows, 0), np.where(sound, columns - 1, 0).astype(np.intp))
+    return with_errors(value, errors)
 
 
 @excel("LOOKUP", Anything, Arrays, Arrays(default=None), returns=Kind.ANY, facts=Facts(mode_argument=3, jumps=True))
@@ -213,8 +213,8 @@ def _search_by_halves(key: Value, vector: Value, side: int, falling: bool) -> In
     if side == (LARGER if falling else SMALLER):
         return before
     column = map_parts(vector, lambda part: part.reshape(part.shape[0], -1, 1))
-    wanted, found = to_ordered(key, pick(column, np.maximum(before, 0), np.zeros(1, np.intp)))
-    equal = ((wanted.kinds == found.kinds) & (wanted.order == found.order)).reshape(before.shape) & (before >= 0)
+    wanted, order = to_ordered(key, pick(column, np.maximum(before, 0), np.zeros(1, np.intp)))
+    equal = ((wanted.kinds == order.kinds) & (wanted.order == order.order)).reshape(before.shape) & (before >= 0)
     after = np.where(before + 1 < column.shape[1], before + 1, -1)
     return np.where(equal, before, -1 if side == EXACT else after)
 
@@ -299,11 +299,11 @@ def _take_found(
     """Take the row of `results` that a single key finds; for the keys of an array formula, its first cell."""
     indices, wrong = _find_indices(key, vector, mode, direction)
     errors = first_error(errors, wrong)
-    found = (indices >= 0) & (errors == 0)
-    rows = np.where(found, indices, 0)
+    value = (indices >= 0) & (errors == 0)
+    rows = np.where(value, indices, 0)
     if results.shape[2] == 1 or indices.ndim == 3:
-        return choose(found, pick(results, rows, np.zeros(1, np.intp)), with_errors(instead, errors))
-    found_in_all = require_same_in_all_trials(found)
+        return choose(value, pick(results, rows, np.zeros(1, np.intp)), with_errors(instead, errors))
+    found_in_all = require_same_in_all_trials(value)
     if not found_in_all:
         return with_errors(instead, errors)
     return pick(results, rows[:, None, None], np.arange(results.shape[2])[None, None, :])

@@ -102,12 +102,12 @@ class Search:
         """Return the positions counted from 0, as whole numbers for `Pick.at`, `(n,)`, in the memory of `out` where it
         is given.
         """
-        found = np.empty(keys.shape, np.int64) if out is None else out.view(np.int64)
+        values = np.empty(keys.shape, np.int64) if out is None else out.view(np.int64)
         if self.divides:
-            np.copyto(found, self._steps(keys), casting="unsafe")
+            np.copyto(values, self._steps(keys), casting="unsafe")
         else:
-            np.subtract(self._positions(keys), 1, out=found)
-        return found
+            np.subtract(self._positions(keys), 1, out=values)
+        return values
 
     def _steps(self, keys: Floats) -> Floats:
         """How many steps lie between the first number and each key, in memory that the next call writes to again."""
@@ -130,11 +130,11 @@ class Search:
         guess = np.minimum(keys, self.rising[-2])
         guess -= self.rising[0]
         guess *= 1.0 / self.step
-        found: NDArray[np.intp] = guess.astype(np.intp)
-        found -= keys < self.rising.take(found)
-        found += 1
-        found += keys >= self.rising.take(found)
-        return found
+        values: NDArray[np.intp] = guess.astype(np.intp)
+        values -= keys < self.rising.take(values)
+        values += 1
+        values += keys >= self.rising.take(values)
+        return values
 
 
 def _divides(rising: Floats, step: float) -> bool:
@@ -169,10 +169,10 @@ class Pick:
         (work,) = work_arrays(positions.size, 1)
         indices = work.view(np.int64).reshape(positions.shape)
         np.copyto(indices, positions, casting="unsafe")
-        found: Floats = self.numbers.take(indices, out=out, mode="clip")
-        return found
+        values: Floats = self.numbers.take(indices, out=out, mode="clip")
+        return values
 
     def at(self, indices: NDArray[np.int64], out: Floats | None = None) -> Floats:
         """Return the numbers at `Search.indices`, `(n,)`; `out` must not be the memory of these."""
-        found: Floats = self.numbers[1:].take(indices, out=out, mode="clip")
-        return found
+        values: Floats = self.numbers[1:].take(indices, out=out, mode="clip")
+        return values

@@ -100,8 +100,8 @@ def _find_patterns(result: Indices, keys: Ordered, vector: Ordered, last: bool) 
     is_text, order = keys.kinds[:, 0] == TEXT, keys.order[:, 0]
     for rank in np.unique(order[is_text]).tolist():
         if is_pattern(text := keys.text(rank)):
-            found = _hit_of_each_row(_match_pattern(vector, text), last)
-            result = np.where(is_text & (order == rank), found, result)
+            values = _hit_of_each_row(_match_pattern(vector, text), last)
+            result = np.where(is_text & (order == rank), values, result)
     return result
 
 

@@ -295,9 +295,9 @@ class _Running(Function):
         opened = [part.opened() if isinstance(part, _Overflowed) else part for part in arguments]
         x, counts, errors = side_by_side(opened, Kind.NUMBER)
         total = self.body(x, counts)
-        found = Value.of_numbers(total, errors)
+        value = Value.of_numbers(total, errors)
         overflows = ~np.isfinite(total) & (errors == 0)
-        return _Overflowed(found, overflows) if overflows.any() else found
+        return _Overflowed(value, overflows) if overflows.any() else value
 
 
 def _running(name: str) -> Function:

@@ -36,8 +36,8 @@ _DOUBLE_FACTORIALS: Final = np.array([_double_factorial(n) for n in range(-1, 30
 
 def _first_error(x: Floats, errors: Codes, bad: Bools) -> Codes:
     """Return the first error of each trial, `#NUM!` where a number is bad: (n, k) -> (n,)."""
-    found = np.where((errors == 0) & bad, np.uint8(ErrorCode.NUM), errors).astype(np.uint8)
-    return first_error_in_row(found)
+    values = np.where((errors == 0) & bad, np.uint8(ErrorCode.NUM), errors).astype(np.uint8)
+    return first_error_in_row(values)
 
 
 @excel("GCD", Cells(repeat=True))

@@ -25,9 +25,9 @@ def roman(number: object, form: object = 0.0) -> str | ErrorCode:
     """Roman numeral, from the classic form 0 (also TRUE) to the shortest, 4 (also FALSE); `#VALUE!` above 3999."""
     value = float(number) if isinstance(number, bool) else strict_number(number)
     level = (0.0 if form else 4.0) if isinstance(form, bool) else strict_number(form)
-    for found in (value, level):
-        if isinstance(found, ErrorCode):
-            return found
+    for result in (value, level):
+        if isinstance(result, ErrorCode):
+            return result
     if not 0 <= value < 4000 or not 0 <= level < 5:
         return ErrorCode.VALUE
     return _numeral(int(value), int(level))

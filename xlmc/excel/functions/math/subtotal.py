@@ -118,8 +118,8 @@ def _by_number(number: Value, compute: Callable[[int], Value]) -> Value:
     numbers, errors = whole_numbers(number)
     result = error_everywhere(number, ErrorCode.VALUE, errors)
     present = np.unique(flatten_cells(numbers, number)[flatten_cells(errors, number) == 0]).tolist()
-    found = {wanted: compute(int(wanted)) for wanted in present}
-    shapes = {value.shape[1:] for value in found.values()} | ({()} if errors.any() else set())
+    results = {wanted: compute(int(wanted)) for wanted in present}
+    shapes = {value.shape[1:] for value in results.values()} | ({()} if errors.any() else set())
     if number.numbers.ndim == 1 and len(shapes) > 1:
         raise ShapeVaries
     try:
@@ -127,7 +127,7 @@ def _by_number(number: Value, compute: Callable[[int], Value]) -> Value:
     except ValueError:
         hint = "give one number, or arrays of one size"
         raise FormulaError("AGGREGATE is given arrays of different sizes", hint=hint) from None
-    for wanted, value in found.items():
+    for wanted, value in results.items():
         result = choose((numbers == wanted) & (errors == 0), value, result)
     return result
 

@@ -45,8 +45,8 @@ class Within:
 
 
 def _tangent_is_fast() -> bool:
-    found = np.lib.introspect.opt_func_info(func_name="^tan$", signature="^float64$").get("tan", {})
-    return any("X86_V4" in target["current"] or "AVX512" in target["current"] for target in found.values())
+    result = np.lib.introspect.opt_func_info(func_name="^tan$", signature="^float64$").get("tan", {})
+    return any("X86_V4" in target["current"] or "AVX512" in target["current"] for target in result.values())
 
 
 BY_TANGENTS: Final = _tangent_is_fast()

@@ -145,8 +145,8 @@ def _population_variance(x: Floats, counts: Bools) -> Floats:
 
 def _root(variance: Callable[[Floats, Bools], Floats]) -> Callable[[Floats, Bools], Floats]:
     def deviation(x: Floats, counts: Bools) -> Floats:
-        found = variance(x, counts)
-        return np.where(found >= 0, np.sqrt(np.where(found >= 0, found, 0.0)), DIV0)
+        values = variance(x, counts)
+        return np.where(values >= 0, np.sqrt(np.where(values >= 0, values, 0.0)), DIV0)
 
     return deviation
 

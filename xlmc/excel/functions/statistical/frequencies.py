@@ -73,8 +73,8 @@ def mode(*values: Value) -> Value:
     """Return the most frequent number, the first of several; `#N/A` where none occurs twice."""
     modes = _modes_of(values)
     first = np.minimum(modes.indices[:, :1], modes.x.shape[1] - 1)
-    found = np.take_along_axis(modes.x, first, axis=1)[:, 0]
-    return Value.of_numbers(np.where(modes.how_many > 0, found, NA), modes.errors)
+    result = np.take_along_axis(modes.x, first, axis=1)[:, 0]
+    return Value.of_numbers(np.where(modes.how_many > 0, result, NA), modes.errors)
 
 
 @excel("MODE.MULT", Arrays(repeat=True), returns=Kind.ANY, facts=Facts(spills=True, empty_cells=EmptyCells.IGNORED))
@@ -86,9 +86,9 @@ def modes_in_a_column(*values: Value) -> Value:
     """
     modes = _modes_of(values)
     rows = int(require_same_in_all_trials(np.where(modes.errors > 0, 1, np.maximum(modes.how_many, 1))))
-    found = np.take_along_axis(modes.x, np.minimum(modes.indices[:, :rows], modes.x.shape[1] - 1), axis=1)
-    found = np.where(modes.how_many[:, None] > 0, found, NA)
-    return Value.of_numbers(found[:, :, None], modes.errors.reshape(-1, 1, 1))
+    result = np.take_along_axis(modes.x, np.minimum(modes.indices[:, :rows], modes.x.shape[1] - 1), axis=1)
+    result = np.where(modes.how_many[:, None] > 0, result, NA)
+    return Value.of_numbers(result[:, :, None], modes.errors.reshape(-1, 1, 1))
 
 
 @excel("FREQUENCY", Arrays, Arrays, returns=Kind.ANY, facts=Facts(spills=True, empty_cells=EmptyCells.IGNORED_IN_FIRST))

@@ -82,8 +82,8 @@ def t_test(first: Value, second: Value, tails: Value, kind: Value) -> Value:
     (sides, kinds), codes, shape = points_of(tails, kind)
     sides, kinds = np.floor(sides), np.floor(kinds)
     result = np.full((1, 1), NUM)
-    for number, found in enumerate((_paired(first, second), _pooled(one, other), _unpooled(one, other)), start=1):
-        result = np.where(kinds == number, found[:, None], result)
+    for number, values in enumerate((_paired(first, second), _pooled(one, other), _unpooled(one, other)), start=1):
+        result = np.where(kinds == number, values[:, None], result)
     halved = np.where((sides == 1) & (result >= 0), result / 2, result)
     result = np.where((sides == 1) | (sides == 2), halved, NUM)
     return restore_shape(result, first_error(one.errors[:, None], other.errors[:, None], *codes), shape)
@@ -116,9 +116,9 @@ def chi_square_test(actual: Value, expected: Value) -> Value:
     freedom = _freedom_of_table(*actual.as_range().shape[1:])
     if pairs is None or freedom == 0:
         return Value.of_numbers(np.full(1, NA), first_error(sample_of(actual).errors, sample_of(expected).errors))
-    found, wanted, counts, errors = pairs
+    values, wanted, counts, errors = pairs
     divisor = np.where(counts & (wanted != 0), wanted, 1.0)
-    total = row_sums(np.where(counts, (found - wanted) / divisor * (found - wanted), 0.0))
+    total = row_sums(np.where(counts, (values - wanted) / divisor * (values - wanted), 0.0))
     result = np.where(total >= 0, chi_square_above(np.maximum(total, 0.0), np.asarray(float(freedom))), NUM)
     return Value.of_numbers(np.where((counts & (wanted == 0)).any(axis=1), DIV0, result), errors)
 

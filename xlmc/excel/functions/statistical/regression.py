@@ -115,26 +115,26 @@ def _ratio(above: Floats, below: Floats) -> Floats:
     return np.where(below > 0, above / np.where(below > 0, below, 1.0), NUM)
 
 
-def _coefficients(found: _Fit, *, exponential: bool) -> Floats:
+def _coefficients(results: _Fit, *, exponential: bool) -> Floats:
     """Return the coefficients, that of the last variable first, then the intercept: (n, p + 1)."""
-    result = np.concatenate([found.slopes[:, ::-1], found.intercept[:, None]], axis=1)
+    result = np.concatenate([results.slopes[:, ::-1], results.intercept[:, None]], axis=1)
     return np.exp(result) if exponential else result
 
 
-def _table(found: _Fit, free: Bools, first: Floats) -> Floats:
+def _table(result: _Fit, free: Bools, first: Floats) -> Floats:
     """Return the five rows of LINEST under the first: (n, 5, p + 1)."""
     n = max(first.shape[0], free.shape[0])
     table = np.full((n, 5, first.shape[1]), NA)
-    left = found.freedom > 0
-    variance = np.where(left, found.residual / np.where(left, found.freedom, 1.0), 0.0)
+    left = result.freedom > 0
+    variance = np.where(left, result.residual / np.where(left, result.freedom, 1.0), 0.0)
     error = np.sqrt(variance)
     table[:, 0] = first
-    table[:, 1, :-1] = (found.slope_spread * error[:, None])[:, ::-1]
-    table[:, 1, -1] = np.where(free, found.intercept_spread * error, NA)
-    table[:, 2, 0], table[:, 2, 1] = _ratio(found.regression, found.regression + found.residual), error
-    table[:, 3, 0] = _ratio(found.regression, np.where(left, found.used * variance, 0.0))
-    table[:, 3, 1] = np.maximum(found.freedom, 0.0)
-    table[:, 4, 0], table[:, 4, 1] = found.regression, found.residual
+    table[:, 1, :-1] = (result.slope_spread * error[:, None])[:, ::-1]
+    table[:, 1, -1] = np.where(free, result.intercept_spread * error, NA)
+    table[:, 2, 0], table[:, 2, 1] = _ratio(result.regression, result.regression + result.residual), error
+    table[:, 3, 0] = _ratio(result.regression, np.where(left, result.used * variance, 0.0))
+    table[:, 3, 1] = np.maximum(result.freedom, 0.0)
+    table[:, 4, 0], table[:, 4, 1] = result.regression, result.residual
     return table
 
 
@@ -143,10 +143,10 @@ def _estimate(known: _Known | None, const: Value | None, stats: Value | None, *,
         return constant(ErrorCode.REF)
     known = _logarithms(known) if exponential else known
     (free, wrong), (whole, wrong_too) = _read_condition(const, True), _read_condition(stats, False)
-    found = fit(known.y, known.x, free)
-    first = _coefficients(found, exponential=exponential)
+    results = fit(known.y, known.x, free)
+    first = _coefficients(results, exponential=exponential)
     in_full = bool(require_same_in_all_trials(whole))
-    result = _table(found, free, first) if in_full else first[:, None, :]
+    result = _table(results, free, first) if in_full else first[:, None, :]
     return Value.of_numbers(result, first_error(known.errors, wrong, wrong_too)[:, None, None])
 
 
@@ -190,11 +190,11 @@ def _read_new(known: _Known, xs: Value | None, new: Value | None) -> tuple[Float
 
 def _predict(ys: Value, xs: Value | None, new: Value | None, const: Value | None, *, exponential: bool) -> Value:
     known = _read_known(ys, xs)
-    found = None if known is None else _read_new(known, xs, new)
-    if known is None or found is None:
+    result = None if known is None else _read_new(known, xs, new)
+    if known is None or result is None:
         return constant(ErrorCode.REF)
     known = _logarithms(known) if exponential else known
-    x, wrong_x, shape = found
+    x, wrong_x, shape = result
     free, wrong = _read_condition(const, True)
     y = fit(known.y, known.x, free).at(x)
     y = np.exp(y) if exponential else y
@@ -311,13 +311,13 @@ class _Frame:
     def solve(self, y: Floats) -> list[Floats]:
         """Find the coefficients with which the columns come closest to y: (n, m) -> p of (n,)."""
         p = len(self.columns)
-        found: list[Floats] = [np.zeros(1)] * p
+        result: list[Floats] = [np.zeros(1)] * p
         for i in reversed(range(p)):
             total = row_sums(self.directions[i] * y)
             for j in range(i + 1, p):
-                total = total - self.parts[i][j] * found[j]
-            found[i] = np.where(self.independent[i], total / self.parts[i][i], 0.0)
-        return found
+                total = total - self.parts[i][j] * result[j]
+            result[i] = np.where(self.independent[i], total / self.parts[i][i], 0.0)
+        return result
 
     def residual(self, y: Floats, slopes: list[Floats]) -> Floats:
         """Return what remains of y without the columns times these coefficients: (n, m)."""

@@ -124,8 +124,8 @@ _WILDCARD: Final = re.compile(r"~.|~$|.", re.DOTALL)
 def find(wanted: str, text: str, start: float) -> object:
     """Return the position of a text in another one, searched from a position on; capitals count."""
     first = math.trunc(start) - 1
-    found = text.find(wanted, first) if 0 <= first <= len(text) else -1
-    return ErrorCode.VALUE if found < 0 else found + 1.0
+    value = text.find(wanted, first) if 0 <= first <= len(text) else -1
+    return ErrorCode.VALUE if value < 0 else value + 1.0
 
 
 @excel("SEARCH", Text, Text, Number(default=1.0), aliases=("SEARCHB",))
@@ -134,8 +134,8 @@ def find(wanted: str, text: str, start: float) -> object:
 def search(wanted: str, text: str, start: float) -> object:
     """As `FIND`, but case does not count, and `?` and `*` are wildcards; `~` takes the next character as it is."""
     first = math.trunc(start) - 1
-    found = _first_fit(wanted, text, first) if 0 <= first <= len(text) else None
-    return ErrorCode.VALUE if found is None else found + 1.0
+    value = _first_fit(wanted, text, first) if 0 <= first <= len(text) else None
+    return ErrorCode.VALUE if value is None else value + 1.0
 
 
 def _first_fit(wanted: str, text: str, start: int) -> int | None:
@@ -150,10 +150,10 @@ def _first_fit(wanted: str, text: str, start: int) -> int | None:
         return None
     position = head.end()
     for piece in pieces[1:]:
-        found = piece.search(text, position)
-        if found is None:
+        match = piece.search(text, position)
+        if match is None:
             return None
-        position = found.end()
+        position = match.end()
     return head.start()
 
 

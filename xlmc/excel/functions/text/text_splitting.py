@@ -67,9 +67,9 @@ def _piece(
         return ""
     if abs(number) > len(to_units(source)):
         return ErrorCode.VALUE
-    found = _occurrence(source, [object_text(mark) for mark in marks], number, bool(case), bool(end))
-    if found is not None:
-        return cut(source, found)
+    result = _occurrence(source, [object_text(mark) for mark in marks], number, bool(case), bool(end))
+    if result is not None:
+        return cut(source, result)
     return ErrorCode.NA if instead is None else instead
 
 

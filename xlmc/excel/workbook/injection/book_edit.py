@@ -152,7 +152,7 @@ def _add_names(document: SplicedXml, new: Iterable[tuple[int, SheetName]]) -> No
     """Add each name at its place in Excel's order: alphabetical, then by sheet."""
     holder = document.root.find("definedNames")
     present = [(_order(element.attributes), element) for element in (holder.children if holder else ())]
-    names = sorted((_attributes(index, name) for index, name in new), key=lambda found: _order(found[0]))
+    names = sorted((_attributes(index, name) for index, name in new), key=lambda result: _order(result[0]))
     tag = document.prefix(document.root) + "definedName"
     loose = []
     for attributes, text in names:

@@ -100,9 +100,9 @@ def with_last_row(xml: bytes, part: str, last: int) -> bytes:
 def with_calculation_on_load(xml: bytes, part: str) -> bytes:
     """Return a workbook's part that has Excel calculate all formulas when it opens the file."""
     document = SplicedXml(xml, part)
-    found = document.root.find("calcPr")
-    if found is not None:
-        document.set(found, "fullCalcOnLoad", "1")
+    element = document.root.find("calcPr")
+    if element is not None:
+        document.set(element, "fullCalcOnLoad", "1")
         return document.result()
     new = render(f"{document.prefix(document.root)}calcPr", {"fullCalcOnLoad": "1"})
     behind = next((each for each in document.root.children if each.local in _BEHIND_CALCULATION), None)
@@ -141,13 +141,13 @@ def _cells_of(row: Element | None) -> dict[int, Element]:
 
 def _numbered(elements: list[Element], number_of: Callable[[str], int]) -> dict[int, Element]:
     """Rows or cells by their numbers; those that name none follow the one before."""
-    found: dict[int, Element] = {}
+    result: dict[int, Element] = {}
     number = 0
     for each in elements:
         name = each.attributes.get("r")
         number = number + 1 if name is None else number_of(name)
-        found[number] = each
-    return found
+        result[number] = each
+    return result
 
 
 def _fragment(prefix: str, row: int, column: int, content: Content, style: str | None) -> bytes:

@@ -50,8 +50,8 @@ def roles(parts: Mapping[str, bytes]) -> Roles:
 
 
 def _target(parts: Mapping[str, bytes], part: str, kind: str) -> str | None:
-    found = (r.target for r in relationships(parts, part).values() if r.kind == kind and r.target in parts)
-    return next(found, None)
+    result = (r.target for r in relationships(parts, part).values() if r.kind == kind and r.target in parts)
+    return next(result, None)
 
 
 def types_of(xml: bytes, names: Collection[str]) -> dict[str, str]:
@@ -63,11 +63,11 @@ def types_of(xml: bytes, names: Collection[str]) -> dict[str, str]:
     """
     root = SplicedXml(xml, CONTENT_TYPES).root
     overrides, defaults = _overrides(root), _defaults(root)
-    found = {}
+    result = {}
     for name in names:
         element = overrides.get(_part_name(name)) or defaults[_extension(name)]
-        found[name] = element.attributes["ContentType"]
-    return found
+        result[name] = element.attributes["ContentType"]
+    return result
 
 
 def add_types(xml: bytes, types: Mapping[str, str]) -> bytes:

@@ -77,30 +77,30 @@ def _without_tables(xml: bytes) -> bytes:
     """Return a sheet without the values of its data tables, whose cells hold no formulas but for the first."""
     areas = [
         area
-        for found in _DATA_TABLE.finditer(xml)
-        if (reference := _REFERENCE.search(found[0])) and (area := _area(reference[2].decode()))
+        for result in _DATA_TABLE.finditer(xml)
+        if (reference := _REFERENCE.search(result[0])) and (area := _area(reference[2].decode()))
     ]
     if not areas:
         return xml
 
-    def bare(found: re.Match[bytes]) -> bytes:
-        cell = parse_address(found["position"].decode(), "-")
+    def bare(match: re.Match[bytes]) -> bytes:
+        cell = parse_address(match["position"].decode(), "-")
         inside = isinstance(cell, Cell) and any(cell in area for area in areas)
-        return _TYPE.sub(b"", found["cell"]) if inside else found[0]
+        return _TYPE.sub(b"", match["cell"]) if inside else match[0]
 
     return _VALUE_CELL.sub(bare, xml)
 
 
 def _area(text: str) -> Area | None:
     try:
-        found = parse_address(text, "-")
+        cell = parse_address(text, "-")
     except ValueError:
         return None
-    return Area("-", found.row, found.column, found.row, found.column) if isinstance(found, Cell) else found
+    return Area("-", cell.row, cell.column, cell.row, cell.column) if isinstance(cell, Cell) else cell
 
 
-def _bare(found: re.Match[bytes]) -> bytes:
-    return _TYPE.sub(b"", found["cell"]) + found["formula"]
+def _bare(match: re.Match[bytes]) -> bytes:
+    return _TYPE.sub(b"", match["cell"]) + match["formula"]
 
 
 def _cells(root: Element) -> Iterator[tuple[tuple[int, int], Element]]:

@@ -42,11 +42,11 @@ _TOKEN = re.compile(
 def free_names(wanted: Sequence[str], taken: Collection[str]) -> dict[str, str]:
     """Choose a sheet name for each one wanted: itself, or `Results (2)` where the workbook has a sheet of that name."""
     used = {name.casefold() for name in taken}
-    found: dict[str, str] = {}
+    result: dict[str, str] = {}
     for name in wanted:
-        found[name] = next(candidate for candidate in _numbered(name) if candidate.casefold() not in used)
-        used.add(found[name].casefold())
-    return found
+        result[name] = next(candidate for candidate in _numbered(name) if candidate.casefold() not in used)
+        used.add(result[name].casefold())
+    return result
 
 
 def free_table_name(wanted: str, taken: Collection[str]) -> str:
@@ -94,13 +94,13 @@ def reached(parts: Mapping[str, bytes], *starts: str) -> list[str]:
     Raises:
         WorkbookError: a rels part is not XML.
     """
-    found, names = dict.fromkeys(starts), folded_names(parts)
+    result, names = dict.fromkeys(starts), folded_names(parts)
     queue = list(starts)
     for part in queue:
-        new = [target for target in _pointed_to(parts, part, names) if target not in found]
-        found |= dict.fromkeys(new)
+        new = [target for target in _pointed_to(parts, part, names) if target not in result]
+        result |= dict.fromkeys(new)
         queue += new
-    return [part for part in found if part]
+    return [part for part in result if part]
 
 
 def _pointed_to(parts: Mapping[str, bytes], part: str, names: Mapping[str, str] | None = None) -> list[str]:
@@ -153,12 +153,12 @@ def free_part_names(wanted: Iterable[str], taken: Iterable[str]) -> dict[str, st
     for name in taken:
         stem, number, _ = _split(name)
         last[stem.casefold()] = max(last.get(stem.casefold(), 0), number)
-    found = {}
+    result = {}
     for name in wanted:
         stem, _, extension = _split(name)
         number = last[stem.casefold()] = last.get(stem.casefold(), 0) + 1
-        found[name] = f"{stem}{number}{extension}"
-    return found
+        result[name] = f"{stem}{number}{extension}"
+    return result
 
 
 def free_tables(

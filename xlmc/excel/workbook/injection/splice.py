@@ -231,7 +231,7 @@ def cell_text(text: str) -> str:
     >>> cell_text("a<b_x0041_\r")
     'a&lt;b_x005F_x0041__x000D_'
     """
-    return escape(_UNWRITABLE.sub(lambda found: f"_x{ord(found[0]):04X}_", text), quote=False)
+    return escape(_UNWRITABLE.sub(lambda match: f"_x{ord(match[0]):04X}_", text), quote=False)
 
 
 def _quote(value: object) -> str:

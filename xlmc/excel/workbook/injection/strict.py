@@ -36,9 +36,9 @@ def strict_part(xml: bytes) -> bytes:
     >>> strict_part(b'<x xmlns:a="http://schemas.openxmlformats.org/drawingml/2006/main"><a:alpha val="40000"/></x>')
     b'<x xmlns:a="http://purl.oclc.org/ooxml/drawingml/main"><a:alpha val="40%"/></x>'
     """
-    xml = _TRANSITIONAL.sub(lambda found: _NAMESPACES[found[1].decode()].encode(), xml)
+    xml = _TRANSITIONAL.sub(lambda match: _NAMESPACES[match[1].decode()].encode(), xml)
     xml = _PERCENT.sub(rb"\1%", xml)
-    return _THOUSANDTHS.sub(lambda found: b"%b%g%%" % (found[1], int(found[2]) / 1000), xml)
+    return _THOUSANDTHS.sub(lambda result: b"%b%g%%" % (result[1], int(result[2]) / 1000), xml)
 
 
 def strict_type(relationship: str) -> str:

@@ -18,7 +18,7 @@ def styles_from(xml: bytes, least: int) -> set[int]:
     """
     if _suspect(least).search(xml) is None:
         return set()
-    return {number for found in _STYLED.finditer(xml) if (number := int(found[1])) >= least}
+    return {number for match in _STYLED.finditer(xml) if (number := int(match[1])) >= least}
 
 
 @cache

@@ -75,13 +75,13 @@ def merge_styles(
     lists["cellXfs"].pass_over(beyond)
     cells = [_cell_style(style, indices, formats, normal) for style in _style_entries(source, "cellXfs")]
     differential = [_differential(style, formats) for style in _style_entries(source, "dxfs")]
-    found = StyleMap(
+    result = StyleMap(
         cells=tuple(lists["cellXfs"].index_of(entry) for entry in cells),
         differential=tuple(lists["dxfs"].index_of(entry) for entry in differential),
     )
     for numbered in (formats.list, *lists.values()):  # in the schema's order
         numbered.write()
-    return document.result(), found
+    return document.result(), result
 
 
 def _indices(numbered: _StyleList, source: Element) -> list[int]:
@@ -263,12 +263,12 @@ def _defined_formats(root: Element) -> dict[int, set[str]]:
     """Return the codes of each number of a format; a number that is defined twice, or in several forms, may have
     several.
     """
-    found: dict[int, set[str]] = {}
+    result: dict[int, set[str]] = {}
     holder = root.find("numFmts")
     for entry in _descendants(holder) if holder else ():
         if entry.attributes.get("numFmtId", "").isdecimal():
-            found.setdefault(_number(entry), set()).add(_code(entry))
-    return found
+            result.setdefault(_number(entry), set()).add(_code(entry))
+    return result
 
 
 def _style_entries(root: Element, name: str) -> list[Element]:

@@ -132,7 +132,7 @@ def _exact(
     Raises:
         WorkbookError: a constant is another number, or a formula is none any more.
     """
-    found: dict[Position, float | bool] = {}
+    result: dict[Position, float | bool] = {}
     for position, number in sheet.numbers.items():
         content = cells.get(position)
         value = None if content is None else content.value
@@ -145,7 +145,7 @@ def _exact(
             where = Cell(sheet.name, *position)
             raise _DifferenceError(f"LibreOffice has made {_words(content)} of the number {number!r}", where=where)
         if value != number:
-            found[position] = number
+            result[position] = number
     filled = _positions(sheet)
     for position, number in sheet.results.items():
         content = cells.get(position)
@@ -157,8 +157,8 @@ def _exact(
             else _is_number(content.value)
         )
         if not (same_kind and content.value == number) and math.isfinite(number):
-            found[position] = number
-    return found
+            result[position] = number
+    return result
 
 
 def _words(content: CellContent | None) -> str:
@@ -224,7 +224,7 @@ def _put_texts(parts: dict[str, bytes], entry: SheetEntry, texts: Iterable[Shape
 
 def _shape(text: ShapeText, number: int) -> str:
     """Make a hidden picture of one pixel, as Excel writes it for Crystal Ball."""
-    name = _NOT_IN_NAMES.sub(lambda found: f"_x{ord(found[0]):04x}_", text.shape)
+    name = _NOT_IN_NAMES.sub(lambda match: f"_x{ord(match[0]):04x}_", text.shape)
     more = f"<x:ScriptExtended>{_text_of(text.more)}</x:ScriptExtended>" if text.more else ""
     return (
         f'<v:shape id="{escape(name)}" o:spid="_x0000_s{number}" type="#_x0000_t75" '

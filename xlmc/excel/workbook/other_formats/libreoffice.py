@@ -70,9 +70,9 @@ def converted_to_xlsx(data: bytes, form: OtherFormat) -> bytes:
 
 
 def _program() -> str | None:
-    found = (shutil.which(name) for name in _PROGRAMS)
+    result = (shutil.which(name) for name in _PROGRAMS)
     there = (str(path) for path in _ELSEWHERE if path.is_file())
-    return next((each for each in (*found, *there) if each), None)
+    return next((each for each in (*result, *there) if each), None)
 
 
 def _run(program: str, folder: str, old: Path, form: OtherFormat) -> str:

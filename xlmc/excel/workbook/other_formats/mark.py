@@ -33,17 +33,17 @@ def with_mark(parts: Mapping[str, bytes], form: OtherFormat, macros: bool) -> di
 
 def converted_from(parts: Mapping[str, bytes]) -> OtherFormat | None:
     """Return the format from which LibreOffice converted a workbook; otherwise None."""
-    found = _MARK.search(parts.get(_PROPERTIES, b""))
-    return next(each for each in FORMATS if each.noun == found["what"].decode()) if found else None
+    match = _MARK.search(parts.get(_PROPERTIES, b""))
+    return next(each for each in FORMATS if each.noun == match["what"].decode()) if match else None
 
 
 def other_format_notices(parts: Mapping[str, bytes]) -> Iterator[str]:
     """Return the notices about a workbook that LibreOffice converted, also of one with results in it."""
-    found = _MARK.search(parts.get(_PROPERTIES, b""))
-    if found is not None:
-        by = found["by"].decode().replace("/", " ")
+    match = _MARK.search(parts.get(_PROPERTIES, b""))
+    if match is not None:
+        by = match["by"].decode().replace("/", " ")
         form = converted_from(parts)
         assert form is not None
         yield f"the cells were converted from {form.noun} by {by}; xlmc verify compares the formulas with {form.saved}"
-        if found["macros"]:
+        if match["macros"]:
             yield f"the macros of {form.name} are left out of what xlmc writes"

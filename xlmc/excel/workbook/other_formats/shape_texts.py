@@ -44,9 +44,9 @@ def shape_texts(drawing: bytes, sheet: str) -> Iterator[ShapeText]:
     """
     try:
         for shape in _shapes(drawing, 0, len(drawing), 0):
-            found = _properties(shape)
-            if _TEXT in found:
-                yield ShapeText(*(_text(found.get(key, b"")) for key in (_NAME, _TEXT, _MORE)))
+            result = _properties(shape)
+            if _TEXT in result:
+                yield ShapeText(*(_text(result.get(key, b"")) for key in (_NAME, _TEXT, _MORE)))
     except (struct.error, _DrawingError) as error:
         message = f"the drawing of the sheet {sheet!r} is damaged ({error}), and it may hold data of Crystal Ball"
         raise WorkbookError(message, hint="Open the workbook in Excel with Crystal Ball, and save it again") from None
@@ -82,7 +82,7 @@ def _records(data: bytes, start: int, end: int) -> Iterator[tuple[int, int, int,
 
 def _properties(shape: bytes) -> dict[int, bytes]:
     """Return the properties of a shape that are longer than a number, by their identifiers."""
-    found: dict[int, bytes] = {}
+    result: dict[int, bytes] = {}
     for version, kind, at, stop in _records(shape, 0, len(shape)):
         if kind in _TABLES:
             values = at + 6 * (version >> 4)
@@ -91,9 +91,9 @@ def _properties(shape: bytes) -> dict[int, bytes]:
                 if name & 0x8000:
                     if values + length > stop:
                         raise _DrawingError("a property is longer than its table")
-                    found[name & 0x3FFF] = shape[values : values + length]
+                    result[name & 0x3FFF] = shape[values : values + length]
                     values += length
-    return found
+    return result
 
 
 def _text(value: bytes) -> str:

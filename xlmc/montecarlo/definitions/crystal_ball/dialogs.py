@@ -83,7 +83,7 @@ def read_dialogs(
         findings: takes mistakes and remarks.
     """
     blocks = read_blocks(workbook)
-    if not (blocks.found or blocks.damages):
+    if not (blocks.present or blocks.damages):
         return FromDialogs()
     return _Dialogs(workbook, computed, central, assumptions, forecasts, findings).read(blocks)
 
@@ -130,18 +130,18 @@ class _Dialogs:
         """Return the objects of a kind with their sheets and cells, by sheet, row and column; those of no cell left
         out.
         """
-        found, gone = [], []
+        result, gone = [], []
         for sheet, each in stored:
             if isinstance(each, kind):
                 cell = self._names.cell_of(sheet, each.guid)
                 if cell is None:
                     gone.append(repr(each.name))
                 else:
-                    found.append((sheet, each, cell))
+                    result.append((sheet, each, cell))
         if gone:
             message = f"Crystal Ball's {_WORDS[kind]} {', '.join(gone)} was deleted with its cell, and is left out"
             self._findings.notice(message, self._workbook.name)
-        return sorted(found, key=lambda item: (self._places[item[2].sheet], item[2].row, item[2].column))
+        return sorted(result, key=lambda item: (self._places[item[2].sheet], item[2].row, item[2].column))
 
     # assumptions
 
@@ -444,9 +444,9 @@ class _Dialogs:
             self._found.damages.append(f"Crystal Ball kept something of {', '.join(dict.fromkeys(missing))}: {what}")
 
     def _remark_on_decisions(self, stored: list[tuple[str, Stored]]) -> None:
-        found = self._placed(stored, StoredDecision)
+        result = self._placed(stored, StoredDecision)
         read, left = list[str](), list[str]()
-        for sheet, each, cell in found:
+        for sheet, each, cell in result:
             name = self._shown(sheet, each.name, each.references, cell)
             decision = None if self._computed.at_all(cell) else self._findings.attempt(_decided, name, each, cell)
             if decision is None:
@@ -458,10 +458,10 @@ class _Dialogs:
             self._found.decisions.append(decision)
         if read:
             takes = "a run takes what the cells of decision variables hold, and xlmc optimise finds the best values"
-            self._findings.notice(f"{takes}: {', '.join(read)}. {_INFERRED}", found[0][2])
+            self._findings.notice(f"{takes}: {', '.join(read)}. {_INFERRED}", result[0][2])
         if left:
             message = f"decision variables of Crystal Ball keep the values of their cells: {', '.join(left)}"
-            self._findings.notice(message, found[0][2])
+            self._findings.notice(message, result[0][2])
 
     def _remark_on_others(self, stored: Iterator[Stored]) -> None:
         kinds = dict.fromkeys(each.kind for each in stored if isinstance(each, StoredOther) and each.kind not in _PLAIN)

@@ -164,13 +164,13 @@ def distribution_of(stored: StoredAssumption) -> Distribution:
 
 def _split(text: str) -> tuple[str, list[tuple[str, float]]]:
     name, *parts = text.split(",")
-    found = []
+    result = []
     for part in parts:
         word, _, number = part.partition("=")
         if not _NUMBER.fullmatch(number):
             raise UnreadableError(f"{part!r} is not a parameter and its number")
-        found.append((word, float(number)))
-    return name, found
+        result.append((word, float(number)))
+    return name, result
 
 
 def _words(name: str, given: list[tuple[str, float]]) -> tuple[_Words, dict[str, float]]:

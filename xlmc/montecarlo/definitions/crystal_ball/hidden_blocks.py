@@ -47,12 +47,12 @@ class Blocks:
     Attributes:
         objects: with the sheet of their block.
         damages: what cannot be read.
-        found: whether there is a block at all, also one without objects.
+        present: whether there is a block at all, also one without objects.
     """
 
     objects: list[tuple[str, Stored]] = field(default_factory=list)
     damages: list[Damage] = field(default_factory=list)
-    found: bool = False
+    present: bool = False
 
 
 def read_blocks(workbook: Workbook) -> Blocks:
@@ -63,7 +63,7 @@ def read_blocks(workbook: Workbook) -> Blocks:
         if isinstance(script, DamagedDrawing):
             blocks.damages.append(Damage(script.sheet, "in its drawing", script.reason))
         elif script.shape.startswith("CB_Block"):
-            blocks.found = True
+            blocks.present = True
             if script.shape != _PREFERENCES:
                 _read_block(script.sheet, script.shape, script.text, blocks)
     return blocks

@@ -31,10 +31,10 @@ def remark_on_lost_data(workbook: Workbook, otherwise_defined: bool, findings: F
         otherwise_defined: whether tables or calls say what to run.
         findings: takes it.
     """
-    found = _lost(workbook) or _older(workbook)
-    if found is None:
+    result = _lost(workbook) or _older(workbook)
+    if result is None:
         return
-    where, message, hint = found
+    where, message, hint = result
     if otherwise_defined:
         findings.notice(f"{message}; what the tables and the cells define is run without them", where)
     else:

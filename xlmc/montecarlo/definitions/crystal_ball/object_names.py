@@ -102,12 +102,12 @@ class ObjectNames:
         if any(error in text.upper() for error in _NO_CELL):
             return None
         try:
-            found = parse_address(text, name.sheet)
+            reference = parse_address(text, name.sheet)
         except ValueError:
             return None
-        sheet = self._workbook.sheet_named(found.sheet)
+        sheet = self._workbook.sheet_named(reference.sheet)
         if sheet is None:
             return None
-        if isinstance(found, Area):  # merged cells
-            return Cell(sheet.name, found.top, found.left)
-        return Cell(sheet.name, found.row, found.column)
+        if isinstance(reference, Area):  # merged cells
+            return Cell(sheet.name, reference.top, reference.left)
+        return Cell(sheet.name, reference.row, reference.column)

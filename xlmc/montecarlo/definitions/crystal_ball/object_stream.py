@@ -161,10 +161,10 @@ class _Reader:
         return self._records[kind]()
 
     def _element(self) -> Any:
-        found = self._value()
-        if found is _END or isinstance(found, _Empty):
+        value = self._value()
+        if value is _END or isinstance(value, _Empty):
             raise StreamError("a member is missing")
-        return found
+        return value
 
     def _described(self, library: bool) -> Thing:
         number, name, count = self._int(), self._text(), self._int()
@@ -223,39 +223,39 @@ class _Reader:
         self._spend(length)
         if kind in _FORMS:
             size = struct.calcsize(f"<{_FORMS[kind]}")
-            found = list(struct.unpack(f"<{length}{_FORMS[kind]}", self._take(length * size)))
+            result = list(struct.unpack(f"<{length}{_FORMS[kind]}", self._take(length * size)))
         else:
-            found = [self._primitive(kind) for _ in range(length)]
-        self._keep(number, found)
-        return found
+            result = [self._primitive(kind) for _ in range(length)]
+        self._keep(number, result)
+        return result
 
     def _objects_of(self, number: int, length: int) -> list[Any]:
         self._spend(length)
-        found: list[Any] = []
-        self._keep(number, found)
+        result: list[Any] = []
+        self._keep(number, result)
         self._depth += 1
         if self._depth > _DEEPEST:
             raise StreamError("its objects are nested too deeply")
-        while len(found) < length:
+        while len(result) < length:
             each = self._value()
             if each is _END:
                 raise StreamError("an array is cut short")
             if not isinstance(each, _Empty):
-                found.append(each)
-            elif 0 < each.count <= length - len(found):
-                found += [None] * each.count
+                result.append(each)
+            elif 0 < each.count <= length - len(result):
+                result += [None] * each.count
             else:
                 raise StreamError(f"an array of {length} elements has {each.count} empty ones too many")
         self._depth -= 1
-        return found
+        return result
 
-    def _keep(self, number: int, found: Any) -> None:
+    def _keep(self, number: int, value: Any) -> None:
         """Keep what may be referred to; values within their owner have negative numbers, and nothing refers to them."""
         if number > 0 and number in self._objects:
             raise StreamError(f"it holds the object {number} twice")
-        self._objects[number] = found
-        if not isinstance(found, str):
-            self._made.append(found)
+        self._objects[number] = value
+        if not isinstance(value, str):
+            self._made.append(value)
 
     # values
 
@@ -296,8 +296,8 @@ class _Reader:
             raise StreamError("a text is not UTF-8") from None
 
     def _int(self) -> int:
-        found: int = struct.unpack("<i", self._take(4))[0]
-        return found
+        value: int = struct.unpack("<i", self._take(4))[0]
+        return value
 
     def _byte(self) -> int:
         return self._take(1)[0]

@@ -38,7 +38,7 @@ def refused_rows(
         drawn: the cells of assumptions that tables define; a person has defined one that is among them.
         findings: takes mistakes.
     """
-    found: dict[Cell, FormulaError] = {}
+    result: dict[Cell, FormulaError] = {}
     for row in rows_of(workbook, tables, (), ("What", "Definition", "Stood in", "Was", _WHY, REFUSED_CELL), findings):
         if not row.filled(REFUSED_CELL):
             continue
@@ -49,8 +49,8 @@ def refused_rows(
             if cell not in drawn:
                 why = optional_text(row, _WHY) or "it could not be converted"
                 hint = "Define the cell in the table xlmc_assumptions; or delete the row, and it is a constant"
-                found[cell] = FormulaError(why, where=cell, hint=hint)
-    return found
+                result[cell] = FormulaError(why, where=cell, hint=hint)
+    return result
 
 
 def refused_forecasts(
@@ -96,14 +96,14 @@ def refused_forecasts(
         error = refused[needed[0]]
         return DefinitionError(f"the {what} {name!r} needs {error.where}. {error.message}", hint=error.hint)
 
-    found = {name: error for name, cells in asked.items() if (error := fault("forecast", name, cells))}
+    result = {name: error for name, cells in asked.items() if (error := fault("forecast", name, cells))}
     findings.problems += [
         error for name, cells in cells_of_filters.items() if (error := fault(kinds[name], name, cells))
     ]
     for cell in refused:
         if cell not in reached:
             findings.notice(f"no forecast or filter needs this cell: {refused[cell].message}", cell)
-    return found
+    return result
 
 
 def _cells(filter_: Filter) -> Iterator[Cell]:

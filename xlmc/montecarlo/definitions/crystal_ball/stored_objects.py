@@ -276,12 +276,12 @@ _READERS: Final[Mapping[str, Callable[[Thing], Stored]]] = {
 
 def _references(thing: Thing) -> tuple[CellReference, ...]:
     table = _thing(_thing(thing, "mExcelCellRefs"), "mFors")
-    found = []
+    cell_references = []
     for value in _list(table, "Values"):
         reference = _as_thing(value, "a cell reference")
         use = _thing(reference, "ValueRef+mFor")
-        found.append(CellReference(use.kind, _enumerated(use), _text(reference, "ValueRef+mGuidKey")))
-    return tuple(found)
+        cell_references.append(CellReference(use.kind, _enumerated(use), _text(reference, "ValueRef+mGuidKey")))
+    return tuple(cell_references)
 
 
 def _guid(thing: Thing) -> str:

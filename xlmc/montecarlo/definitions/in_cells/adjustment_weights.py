@@ -33,7 +33,7 @@ def weights_of_matrices(workbook: Workbook, matrices: Collection[Area]) -> dict[
         DefinitionError: a name ends so beside that of a matrix, and is no range of the same size.
     """
     suffixed = [each for each in workbook.names if each.name.lower().endswith(_ENDING)]
-    found = {}
+    result = {}
     for weights in suffixed:
         of = weights.name.lower().removesuffix(_ENDING)
         matrix = next((_area(workbook, each) for each in _named(workbook, of, weights.sheet)), None)
@@ -45,14 +45,14 @@ def weights_of_matrices(workbook: Workbook, matrices: Collection[Area]) -> dict[
                 f"The name {weights.name} is no range of {matrix.rows} rows and columns, as its matrix {matrix} is"
             )
             raise DefinitionError(message, where=workbook.name, hint="Let it name the weights, a cell for each number")
-        found[matrix] = area
-    return found
+        result[matrix] = area
+    return result
 
 
 def _named(workbook: Workbook, name: str, sheet: str | None) -> list[DefinedName]:
     """Return the names that are called so, those of the same sheet, or of the workbook, first."""
-    found = [each for each in workbook.names if each.name.lower() == name]
-    return sorted(found, key=lambda each: each.sheet != sheet)
+    defined_names = [each for each in workbook.names if each.name.lower() == name]
+    return sorted(defined_names, key=lambda each: each.sheet != sheet)
 
 
 def _area(workbook: Workbook, name: DefinedName) -> Area | None:

@@ -56,70 +56,70 @@ def read_in_cells(
         findings: takes remarks, and the rows that stand for a call that is not there.
         tabulated: which of its values every `RiskSimtable` gives, from 1.
     """
-    found = InCells()
+    result = InCells()
     resolver = Resolver(workbook, claims.cells)
     bases: dict[Cell, float | None] = {}
     rows = {call: cell for call, (_, cell) in claims.calls.items()}
     for cell, formula in suspects(workbook):
         reading = CellReading(workbook, computed, lognorm, bases, cell, rows, tabulated)
         try:
-            found.rewritten[cell] = reading.rewrite(resolver.formula(cell, formula))
-            _take(reading, found, claims, findings)
+            result.rewritten[cell] = reading.rewrite(resolver.formula(cell, formula))
+            _take(reading, result, claims, findings)
         except (FormulaError, DefinitionError) as error:
-            found.rewritten[cell] = refused = _about(error, cell, formula)
+            result.rewritten[cell] = refused = _about(error, cell, formula)
             if _OUTPUT.search(formula.text) and not reading.asked:  # others are reported if anything needs the cell
                 findings.problems.append(DefinitionError(refused.message, where=cell, hint=refused.hint))
             if reading.unavailable or (not reading.asked and mentions_result(without_texts(formula.text))):
-                found.unavailable[cell] = reading.unavailable or refused.message
+                result.unavailable[cell] = reading.unavailable or refused.message
         if reading.asked:
-            found.results[cell] = reading.asked
-        if reading.shown is not None and (reading.asked or not isinstance(found.rewritten[cell], FormulaError)):
-            found.shown[cell] = reading.shown
-    _refuse_simulations(workbook, found)
+            result.results[cell] = reading.asked
+        if reading.shown is not None and (reading.asked or not isinstance(result.rewritten[cell], FormulaError)):
+            result.shown[cell] = reading.shown
+    _refuse_simulations(workbook, result)
     for call, (name, cell) in claims.calls.items():
-        if call not in found.taken:
+        if call not in result.taken:
             message = f"the row {name!r} replaces the call {call}, and there is no such call"
             findings.problem(message, claims.cells[cell], "Correct Call in and Call, or clear both")
-    return found
+    return result
 
 
-def _refuse_simulations(workbook: Workbook, found: InCells) -> None:
+def _refuse_simulations(workbook: Workbook, reading: InCells) -> None:
     """Take results of a simulation that no value of a `RiskSimtable` makes for unavailable."""
-    most = max((len(values) for tables in found.simtables.values() for values in tables), default=1)
-    for cell, asked in found.results.items():
+    most = max((len(values) for tables in reading.simtables.values() for values in tables), default=1)
+    for cell, asked in reading.results.items():
         for each in asked:
             number = (
                 None if each.simulation is None else number_of(each.simulation, lambda at: static_value(at, workbook))
             )
             if number is not None and number not in range(1, most + 1):
                 of = "RiskSimtable has no values" if most == 1 else f"RiskSimtable has {most} values"
-                found.unavailable.setdefault(
+                reading.unavailable.setdefault(
                     cell, f"{each.function} asks for simulation {number_text(number)}, and {of}"
                 )
 
 
-def _take(reading: CellReading, found: InCells, claims: Claims, findings: Findings) -> None:
+def _take(reading: CellReading, result: InCells, claims: Claims, findings: Findings) -> None:
     """Add what one cell says."""
     host = reading.host
-    found.rewritten |= reading.trees
-    found.taken |= reading.taken
-    found.shifted |= {site: (host, tree) for site, tree in reading.shifted.items()}
-    alone = reading.draws_alone(found.rewritten[host])
+    result.rewritten |= reading.trees
+    result.taken |= reading.taken
+    result.shifted |= {site: (host, tree) for site, tree in reading.shifted.items()}
+    alone = reading.draws_alone(result.rewritten[host])
     for position in sorted(reading.draws):
         draw = reading.draws[position]
         assumption = replace(draw.assumption, name=_free_name(draw.assumption, claims, findings))
         if draw.properties.name is None:
             assumption = _labelled(assumption, reading.label, alone, claims)
-        found.assumptions.append(assumption)
-        found.draws[assumption.name] = draw
+        result.assumptions.append(assumption)
+        result.draws[assumption.name] = draw
     for name in reading.idle:
-        found.idle.setdefault(name, host)
+        result.idle.setdefault(name, host)
     if reading.output is not None:
-        found.outputs[host] = reading.output
+        result.outputs[host] = reading.output
     if reading.has_lognorm:
-        found.lognorms.append(host)
+        result.lognorms.append(host)
     if reading.simtables:
-        found.simtables[host] = reading.simtables
+        result.simtables[host] = reading.simtables
 
 
 def _free_name(assumption: Assumption, claims: Claims, findings: Findings) -> str:
@@ -160,7 +160,7 @@ def _about(error: FormulaError | DefinitionError, cell: Cell, formula: Formula) 
 
 def in_cell_forecasts(
     workbook: Workbook,
-    found: InCells,
+    reading: InCells,
     assumptions: Iterable[Assumption],
     computed: Computed,
     central: float,
@@ -171,7 +171,7 @@ def in_cell_forecasts(
 
     Args:
         workbook: whose labels the cells are called by where the calls do not name them.
-        found: the calls of the workbook.
+        reading: the calls of the workbook.
         assumptions: all, about which results may be asked for by their names.
         computed: which cells something gives a value.
         central: the share of the central range.
@@ -179,18 +179,20 @@ def in_cell_forecasts(
         findings: takes remarks.
     """
     outputs = []
-    for cell, output in found.outputs.items():
+    for cell, output in reading.outputs.items():
         if cell not in claims.cells:
             label = Label() if output.name else label_of(workbook, cell)
             name = _take_forecast(output.name or label.name or str(cell), cell, claims, findings)
             outputs.append(Forecast(name, cell, cell, output.units or label.unit, central))
     shown = []
     inputs = by_names(assumptions)
-    for cell, asked in found.results.items():
+    for cell, asked in reading.results.items():
         for each in asked:
             for of in each.forecasts:
                 if isinstance(of, str) and name_key(of) in inputs and name_key(of) not in claims.names:
-                    shown.append(_of_input(inputs[name_key(of)], found, each.function, cell, central, claims, findings))
+                    shown.append(
+                        _of_input(inputs[name_key(of)], reading, each.function, cell, central, claims, findings)
+                    )
                 elif isinstance(of, str):
                     _remark_on_name(of, each.function, cell, claims, findings)
                 elif not computed.at_all(of):
@@ -206,16 +208,16 @@ def in_cell_forecasts(
 
 
 def _of_input(
-    of: Assumption, found: InCells, function: str, cell: Cell, central: float, claims: Claims, findings: Findings
+    of: Assumption, reading: InCells, function: str, cell: Cell, central: float, claims: Claims, findings: Findings
 ) -> Forecast:
     """Make a forecast of a draw itself, shifted where its call says so."""
     message = f"the draws of {of.name!r} are taken for a forecast, because {function} shows results of them"
     findings.notice(message, cell)
     site = of.cell
-    if site in found.shifted:
-        host, tree = found.shifted[site]
+    if site in reading.shifted:
+        host, tree = reading.shifted[site]
         site = InFormula.of(host, f"{of.name} shifted")
-        found.rewritten[site] = tree
+        reading.rewritten[site] = tree
     if site not in claims.cells:
         claims.take_cell(site, cell)
     return Forecast(claims.take_name(of.name, cell), site, cell, of.units, central)

@@ -45,5 +45,5 @@ def constant_text(workbook: Workbook, tree: ir.Expression, host: Cell) -> str:
     except FormulaError:
         return ""
     values = None if site in lowering.faults else lowering.value(site)
-    found = None if values is None else values.objects().ravel()[0]
-    return as_text(found) if isinstance(found, str | int | float) and not isinstance(found, ErrorCode) else ""
+    value = None if values is None else values.objects().ravel()[0]
+    return as_text(value) if isinstance(value, str | int | float) and not isinstance(value, ErrorCode) else ""

@@ -71,7 +71,7 @@ def in_cell_correlations(
         findings: takes mistakes.
     """
     taken = {frozenset((row.first, row.second)): row for row in rows}
-    found: list[Correlation | None] = []
+    result: list[Correlation | None] = []
     groups = _groups(assumptions, draws, "matrix")
     weights = findings.attempt(weights_of_matrices, workbook, {row.area for group in groups for _, row in group}) or {}
     compared: set[Cell] = set()
@@ -82,12 +82,12 @@ def in_cell_correlations(
             findings.problem(message, row.row, "Keep one of them")
             continue
         correlation = findings.attempt(_correlation, workbook, weights, first, second)
-        found.append(correlation)
+        result.append(correlation)
         if correlation is not None and correlation.row not in compared:
             compared.add(correlation.row)
             _compare_halves(workbook, first[1].area, correlation.row, findings)
-    found += _partners(assumptions, draws, findings)
-    return [each for each in found if each is not None and (each.value != 0 or each.weight)]
+    result += _partners(assumptions, draws, findings)
+    return [each for each in result if each is not None and (each.value != 0 or each.weight)]
 
 
 def _groups(assumptions: Iterable[Assumption], draws: _Draws, which: str) -> list[list[_Row]]:
@@ -212,7 +212,7 @@ def in_cell_copulas(
         findings: takes mistakes.
     """
     correlated = {name: row for row in correlations for name in (row.first, row.second)}
-    found = []
+    result = []
     for group in _groups(assumptions, draws, "copula"):
         group.sort(key=lambda each: each[1].position)
         both = next((a for a, _ in group if a.name in correlated), None)
@@ -224,8 +224,8 @@ def in_cell_copulas(
             message = f"{twice[0].name!r} has a position of the copula {twice[1].area} that another draw has"
             findings.problem(message, twice[0].row, "Give each draw its own position, or its own instance")
         elif len(group) > 1:
-            found.append(findings.attempt(_copula, workbook, group, findings))
-    return tuple(each for each in found if each is not None)
+            result.append(findings.attempt(_copula, workbook, group, findings))
+    return tuple(each for each in result if each is not None)
 
 
 def _copula(workbook: Workbook, group: Sequence[_Row], findings: Findings) -> Copula:

@@ -124,9 +124,9 @@ def _gives_many(part: ir.Expression) -> bool:
 
 
 def _parts(tree: ir.Expression) -> list[ir.Expression]:
-    found: list[ir.Expression] = []
-    substitute(tree, found.append)
-    return found
+    result: list[ir.Expression] = []
+    substitute(tree, result.append)
+    return result
 
 
 def _inverse(name: str, arguments: tuple[ir.Expression, ...]) -> Drawn | None:

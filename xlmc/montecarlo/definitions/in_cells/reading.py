@@ -194,8 +194,8 @@ class CellReading:
         """Return a cutoff as a number; NaN, which is no distribution, where it is not known."""
         if not isinstance(cutoff, Cell):
             return cutoff
-        found = number_of(self.trees.get(cutoff, cutoff), self._constant)
-        return math.nan if found is None else found
+        value = number_of(self.trees.get(cutoff, cutoff), self._constant)
+        return math.nan if value is None else value
 
     def _find_results(self, tree: ir.Expression) -> None:
         calls: list[ir.Call] = []
@@ -277,9 +277,9 @@ class CellReading:
     def _rewritten(self, trees: Iterable[ir.Expression]) -> tuple[ir.Expression, ...]:
         """Return the arguments of a call with assumptions instead of the calls in them."""
         self._depth += 1
-        found = tuple(substitute(tree, self._replacement) for tree in trees)
+        expression = tuple(substitute(tree, self._replacement) for tree in trees)
         self._depth -= 1
-        return found
+        return expression
 
     def _compound(self, call: ir.Call, number: int) -> Drawn:
         """Return what `RiskCompound` draws; the draws within it are no assumptions of their own."""
@@ -435,14 +435,14 @@ class CellReading:
         if properties.percents is not None:
             numbers = {key: number_of(tree, self._constant) for key, tree in drawn.parameters.items()}
             return percentile_cutoffs(drawn, numbers, properties.percents)
-        found: list[Parameter | None] = []
+        result: list[Parameter | None] = []
         for key, tree in (("low cutoff", properties.lower), ("high cutoff", properties.upper)):
             if tree is not None and properties.shifted_cutoffs and properties.shift is not None:
                 tree = difference(tree, properties.shift)
-            found.append(None if tree is None else self._parameter(tree, f"{number} {key}"))
-        if drawn.data and not (drawn.family.data and drawn.family.data.truncates) and found != [None, None]:
+            result.append(None if tree is None else self._parameter(tree, f"{number} {key}"))
+        if drawn.data and not (drawn.family.data and drawn.family.data.truncates) and result != [None, None]:
             raise FormulaError(f"{drawn.function} cannot be cut off", hint="leave out what lies beyond the cutoff")
-        return found[0], found[1]
+        return result[0], result[1]
 
     def _parameter(self, tree: ir.Expression, label: str) -> Parameter:
         """Return a number, a cell, or a new cell that holds the expression."""
@@ -499,14 +499,14 @@ def _as_tree(parameter: Parameter | None) -> ir.Expression | None:
 
 def _draws(tree: ir.Expression) -> bool:
     """Whether a tree holds a call that draws, or belongs to Crystal Ball or @RISK and shows no result."""
-    found: list[ir.Expression] = []
+    result: list[ir.Expression] = []
 
     def look(part: ir.Expression) -> None:
         if _is_draw_of_a_program(part) or random_draw(part) is not None:
-            found.append(part)
+            result.append(part)
 
     substitute(tree, look)
-    return bool(found)
+    return bool(result)
 
 
 def _drawing_calls_in(trees: Iterable[ir.Expression]) -> list[ir.Call]:
@@ -515,17 +515,17 @@ def _drawing_calls_in(trees: Iterable[ir.Expression]) -> list[ir.Call]:
 
 def _drawing_calls(tree: ir.Expression) -> list[ir.Call]:
     """Yield the calls of Crystal Ball and @RISK that draw, the outermost ones."""
-    found: list[ir.Call] = []
+    calls: list[ir.Call] = []
 
     def look(part: ir.Expression) -> ir.Expression | None:
         if isinstance(part, ir.Call) and part.name not in STAND_INS and _is_draw_of_a_program(part):
             if part.name != "RISKOUTPUT":
-                found.append(part)
+                calls.append(part)
             return part
         return None
 
     substitute(tree, look)
-    return found
+    return calls
 
 
 def _is_draw_of_a_program(part: ir.Expression) -> bool:

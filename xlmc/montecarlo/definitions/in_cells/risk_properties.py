@@ -57,7 +57,7 @@ def properties_of(function: str, calls: _Given) -> Properties:
     Raises:
         FormulaError: one is none, comes twice or has wrong arguments.
     """
-    found = Properties()
+    properties = Properties()
     seen: set[str] = set()
     for call in calls:
         if is_left_out(call):
@@ -72,23 +72,23 @@ def properties_of(function: str, calls: _Given) -> Properties:
         if name in seen or (name.startswith("RiskTruncate") and any(each.startswith("RiskTruncate") for each in seen)):
             raise FormulaError(f"{function} is given {name} beside another like it", hint="keep one of them")
         seen.add(name)
-        found = taken(found, call.arguments)
-    return found
+        properties = taken(properties, call.arguments)
+    return properties
 
 
 def _filled(arguments: _Given, index: int) -> ir.Expression | None:
     return arguments[index] if index < len(arguments) and not is_left_out(arguments[index]) else None
 
 
-def _truncate(found: Properties, arguments: _Given) -> Properties:
-    return replace(found, lower=_filled(arguments, 0), upper=_filled(arguments, 1))
+def _truncate(properties: Properties, arguments: _Given) -> Properties:
+    return replace(properties, lower=_filled(arguments, 0), upper=_filled(arguments, 1))
 
 
-def _truncate_shifted(found: Properties, arguments: _Given) -> Properties:
-    return replace(_truncate(found, arguments), shifted_cutoffs=True)
+def _truncate_shifted(properties: Properties, arguments: _Given) -> Properties:
+    return replace(_truncate(properties, arguments), shifted_cutoffs=True)
 
 
-def _truncate_percents(found: Properties, arguments: _Given) -> Properties:
+def _truncate_percents(properties: Properties, arguments: _Given) -> Properties:
     limits = []
     for index, default in enumerate((0.0, 1.0)):
         given = _filled(arguments, index)
@@ -97,10 +97,10 @@ def _truncate_percents(found: Properties, arguments: _Given) -> Properties:
     if low is None or high is None or not 0 <= low < high <= 1:
         hint = "write RiskTruncateP(0.05, 0.95): the lower one first"
         raise FormulaError("RiskTruncateP takes two probabilities, as numbers from 0 to 1", hint=hint)
-    return replace(found, percents=(low, high))
+    return replace(properties, percents=(low, high))
 
 
-def _corrmat(found: Properties, arguments: _Given) -> Properties:
+def _corrmat(properties: Properties, arguments: _Given) -> Properties:
     matrix, position = arguments[0], number_of(arguments[1])
     if isinstance(matrix, Cell) or not isinstance(matrix, Area) or matrix.rows != matrix.columns:
         hint = "give it a range with as many rows as columns, without headings"
@@ -112,11 +112,11 @@ def _corrmat(found: Properties, arguments: _Given) -> Properties:
     if instance is not None and not isinstance(instance, ir.Number | ir.Text):
         raise FormulaError("RiskCorrmat's instance must be a number or a text", hint="write it, or leave it out")
     return replace(
-        found, matrix=MatrixRow(matrix, int(position), "" if instance is None else str(instance.value).casefold())
+        properties, matrix=MatrixRow(matrix, int(position), "" if instance is None else str(instance.value).casefold())
     )
 
 
-def _copula(found: Properties, arguments: _Given) -> Properties:
+def _copula(properties: Properties, arguments: _Given) -> Properties:
     area, position, instance = arguments[0], number_of(arguments[1]), _filled(arguments, 2)
     if isinstance(area, Cell) or not isinstance(area, Area):
         hint = "name the range that says which copula it is, such as K1:L3 with Clayton, and Theta and its number"
@@ -127,17 +127,17 @@ def _copula(found: Properties, arguments: _Given) -> Properties:
     if instance is not None and not isinstance(instance, ir.Number | ir.Text):
         raise FormulaError("RiskCopula's instance must be a number or a text", hint="write it, or leave it out")
     text = "" if instance is None else str(instance.value).casefold()
-    return replace(found, copula=MatrixRow(area, int(position), text))
+    return replace(properties, copula=MatrixRow(area, int(position), text))
 
 
 def _partner(depends: bool) -> _Taken:
-    def taken(found: Properties, arguments: _Given) -> Properties:
+    def taken(properties: Properties, arguments: _Given) -> Properties:
         name = arguments[0]
         function = "RiskDepC" if depends else "RiskIndepC"
         if not isinstance(name, ir.Text | ir.Number):
             hint = 'write the same text in both, such as RiskIndepC("price") and RiskDepC("price", 0.8)'
             raise FormulaError(f"{function} needs a text", hint=hint)
-        return replace(found, partner=Partner(str(name.value).casefold(), arguments[1] if depends else None))
+        return replace(properties, partner=Partner(str(name.value).casefold(), arguments[1] if depends else None))
 
     return taken
 
@@ -150,22 +150,22 @@ def _library(_found: Properties, _arguments: _Given) -> Properties:
 
 
 def _idle(name: str) -> _Taken:
-    return lambda found, _: replace(found, idle=(*found.idle, name))
+    return lambda properties, _: replace(properties, idle=(*properties.idle, name))
 
 
-def _ignored(found: Properties, _: _Given) -> Properties:
-    return found
+def _ignored(properties: Properties, _: _Given) -> Properties:
+    return properties
 
 
 _PROPERTIES: Final[dict[str, tuple[int, int, _Taken]]] = {
     "RiskTruncate": (0, 2, _truncate),
     "RiskTruncate2": (0, 2, _truncate_shifted),
     "RiskTruncateP": (0, 2, _truncate_percents),
-    "RiskShift": (1, 1, lambda found, given: replace(found, shift=given[0])),
-    "RiskName": (1, 1, lambda found, given: replace(found, name=given[0])),
-    "RiskUnits": (1, 1, lambda found, given: replace(found, units=given[0])),
-    "RiskStatic": (1, 1, lambda found, given: replace(found, static=given[0])),
-    "RiskLock": (0, 1, lambda found, _: replace(found, locked=True)),
+    "RiskShift": (1, 1, lambda properties, given: replace(properties, shift=given[0])),
+    "RiskName": (1, 1, lambda properties, given: replace(properties, name=given[0])),
+    "RiskUnits": (1, 1, lambda properties, given: replace(properties, units=given[0])),
+    "RiskStatic": (1, 1, lambda properties, given: replace(properties, static=given[0])),
+    "RiskLock": (0, 1, lambda properties, _: replace(properties, locked=True)),
     "RiskCorrmat": (2, 3, _corrmat),
     "RiskCopula": (2, 3, _copula),
     "RiskIndepC": (1, 1, _partner(False)),

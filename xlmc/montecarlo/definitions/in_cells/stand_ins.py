@@ -100,7 +100,7 @@ def simtable_scenarios(
         tables: the cells with `RiskSimtable` -> the values of each.
         findings: takes the notice that a run uses the first.
     """
-    most = max((len(values) for found in tables.values() for values in found), default=1)
+    most = max((len(values) for result in tables.values() for values in result), default=1)
     if most == 1:
         return
     first = next(iter(tables))
@@ -108,8 +108,8 @@ def simtable_scenarios(
     findings.notice(message, first)
     for number in range(2, most + 1):
         shown = "; ".join(
-            f"{cell} = {', '.join(_shown(values[number - 1]) for values in found if number <= len(values))}"
-            for cell, found in tables.items()
+            f"{cell} = {', '.join(_shown(values[number - 1]) for values in results if number <= len(values))}"
+            for cell, results in tables.items()
         )
         yield Scenario(f"simulation {number}", (Tabulated(number, shown, first),), row=first)
 

@@ -33,10 +33,10 @@ _OF_CRYSTAL_BALL: Final = "cb_data_"
 
 def holds_call(text: str) -> bool:
     """Whether a formula holds a call that draws, shows results, or belongs to Crystal Ball, @RISK or their like."""
-    found = without_texts(text)
-    if _CALL.search(found) is not None:
+    result = without_texts(text)
+    if _CALL.search(result) is not None:
         return True
-    others = _OTHER.findall(found)
+    others = _OTHER.findall(result)
     if not others:
         return False
     from xlmc.montecarlo.definitions.in_cells.other_programs import of_another_program  # few workbooks have them
@@ -87,9 +87,9 @@ class InCells:
     @property
     def refused(self) -> Iterator[FormulaError]:
         """Why cells that show no results cannot be computed."""
-        for cell, found in self.rewritten.items():
-            if isinstance(found, FormulaError) and cell not in self.results and cell not in self.unavailable:
-                yield found
+        for cell, expression in self.rewritten.items():
+            if isinstance(expression, FormulaError) and cell not in self.results and cell not in self.unavailable:
+                yield expression
 
 
 def suspects(workbook: Workbook) -> Iterator[tuple[Cell, Formula]]:
@@ -115,17 +115,17 @@ def suspects(workbook: Workbook) -> Iterator[tuple[Cell, Formula]]:
 
 def _names_of_calls(workbook: Workbook) -> set[str]:
     """Return the defined names, in small letters, that stand for calls, also by other names."""
-    found: set[str] = set()
+    result: set[str] = set()
     while True:
-        any_name = _any_of(found)
+        any_name = _any_of(result)
         more = {
             name.name.lower()
             for name in workbook.names
             if holds_call(name.text) or (any_name and any_name.search(name.text))
         }
-        if more <= found:
-            return found
-        found |= more
+        if more <= result:
+            return result
+        result |= more
 
 
 def _any_of(names: Collection[str]) -> re.Pattern[str] | None:

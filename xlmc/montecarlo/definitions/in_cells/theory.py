@@ -142,10 +142,10 @@ class Distribution:
 _Function = Callable[[Distribution, float], float]
 
 
-def _moment(found: float) -> float:
-    if not math.isfinite(found):
+def _moment(value: float) -> float:
+    if not math.isfinite(value):
         raise FormulaError("this number of the distribution is infinite, or there is none", hint="use percentiles")
-    return found
+    return value
 
 
 def _standardised(of: Distribution, order: int) -> float:

@@ -96,12 +96,12 @@ def read_assumptions(
     percentiles = (written for table in tables for written, _ in table.columns.values() if is_percentile(written))
     known = (*_KNOWN, *percentiles)
     rows = rows_of(workbook, tables, ("Name",), known, findings)
-    found = []
+    result = []
     for row in rows:
         with findings.recording():
             if not _waits(row):
-                found.append(_assumption(row, known, computed, claims, findings))
-    return tuple(filter(None, found))
+                result.append(_assumption(row, known, computed, claims, findings))
+    return tuple(filter(None, result))
 
 
 def _waits(row: Row) -> bool:
@@ -218,8 +218,8 @@ def _call(row: Row) -> InFormula | None:
 def _family(row: Row) -> Family:
     typed = optional_text(row, "Distribution")
     family = family_named(typed, where=row.cell("Distribution")) if typed else FAMILIES["Uniform"]
-    found = _with_percentiles(row, family)
-    return _with_moments(row, found, typed) if found is family else found
+    result = _with_percentiles(row, family)
+    return _with_moments(row, result, typed) if result is family else result
 
 
 def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, findings: Findings) -> float | None:
@@ -245,12 +245,12 @@ def _base(workbook: Workbook, computed: Computed, cell: Cell, frozen: bool, find
 
 def _given(row: Row, family: Family, findings: Findings) -> dict[str, Parameter]:
     """Read the family's parameters and the cutoffs in this row by key; every mistake is recorded on its own."""
-    found: dict[str, Parameter] = {
+    result: dict[str, Parameter] = {
         spec.key: spec.default
         for spec in family.parameters
         if spec.default is not None and not any(map(row.filled, spec.headings))
     }
-    required = (spec for spec in family.parameters if spec.key not in found)
+    required = (spec for spec in family.parameters if spec.key not in result)
     headings = {spec.key: findings.attempt(_heading_of, row, family, spec) for spec in required}
     headings |= {key: heading for key, heading in CUTOFFS.items() if row.filled(heading)}
     for key, heading in headings.items():
@@ -258,9 +258,9 @@ def _given(row: Row, family: Family, findings: Findings) -> dict[str, Parameter]
             continue
         with findings.recording():
             if (value := parameter(row, heading)) is not None:
-                found[key] = value
+                result[key] = value
     _refuse_unused(row, family, findings)
-    return found
+    return result
 
 
 def _cell_of(row: Row, family: Family, key: str) -> Cell:

@@ -42,17 +42,17 @@ def cells_that_change(
         return _coefficients(workbook, row, new)
     if row is None or isinstance(old.cell, InFormula):
         return {}, [NO_TABLE]
-    found: dict[Cell, CellValue] = {}
+    result: dict[Cell, CellValue] = {}
     lacking: list[str] = []
     for headings, value in _columns(old, new):
         heading = next(filter(row.filled, headings), None) or next(filter(row.has, headings), None)
         if heading is not None:
-            found[row.cell(heading)] = value
+            result[row.cell(heading)] = value
         elif value is not None and value is not False:
             lacking.append(headings[0])
     if isinstance(old, Assumption) and isinstance(new, Assumption) and old.base != new.base:
-        found[old.cell] = new.base
-    return found, lacking
+        result[old.cell] = new.base
+    return result, lacking
 
 
 def _coefficients(workbook: Workbook, row: Row | None, new: Correlation) -> tuple[dict[Cell, CellValue], list[str]]:
@@ -63,14 +63,14 @@ def _coefficients(workbook: Workbook, row: Row | None, new: Correlation) -> tupl
         return {row.cell("Correlation"): new.number}, []
     first, *others = row.headings
     pair, body = {name_key(new.first), name_key(new.second)}, row.table.table.body
-    found: dict[Cell, CellValue] = {}
+    result: dict[Cell, CellValue] = {}
     for number in range(body.top, body.bottom + 1):
         each = Row(workbook, row.table, number)
         name = name_key(as_text(each.content(first).value))
         for heading in others:
             if each.filled(heading) and {name, name_key(heading)} == pair:
-                found[each.cell(heading)] = new.number
-    return found, []
+                result[each.cell(heading)] = new.number
+    return result, []
 
 
 def use_cell(workbook: Workbook, first: Cell) -> Cell | None:

@@ -41,10 +41,10 @@ def read_correlations(
     """
     frozen_names, pairs = frozenset(frozen), _Pairs()
     rows = rows_of(workbook, tables, _KNOWN, _KNOWN, findings)
-    found = [_correlation(row, names, frozen_names, pairs, findings) for row in rows]
+    result = [_correlation(row, names, frozen_names, pairs, findings) for row in rows]
     for matrix in matrices:
-        found += _of_matrix(workbook, matrix, names, frozen_names, pairs, findings)
-    return tuple(each for each in found if each is not None)
+        result += _of_matrix(workbook, matrix, names, frozen_names, pairs, findings)
+    return tuple(each for each in result if each is not None)
 
 
 def _of_matrix(

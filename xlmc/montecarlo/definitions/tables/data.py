@@ -52,10 +52,10 @@ def given_data(row: Row, family: Family, computed: Computed, findings: Findings)
         message = f"{family.name} takes {columns} columns ({family.data.content}), and {area} has {area.columns}"
         raise DefinitionError(message, where=where, hint="Correct the range")
     values = area_values(row.workbook, area, computed)
-    found = DataRange(area, values, logical(row, "Cumulative"), parameter(row, "Bandwidth"))
-    if family.data is not None and "Cumulative" in family.data.options and not found.cumulative:
-        _remark_on_sum(found, row.workbook, findings)
-    return found
+    data_range = DataRange(area, values, logical(row, "Cumulative"), parameter(row, "Bandwidth"))
+    if family.data is not None and "Cumulative" in family.data.options and not data_range.cumulative:
+        _remark_on_sum(data_range, row.workbook, findings)
+    return data_range
 
 
 def _remark_on_sum(data: DataRange, workbook: Workbook, findings: Findings) -> None:
@@ -84,8 +84,8 @@ def area_values(workbook: Workbook, area: Area, computed: Computed) -> tuple[tup
             return None
         if computed.by_formula(cell) and content.value is None:
             return cell
-        found = number_in("The data cell", content, cell)
-        return cell if computed.by_formula(cell) else found
+        result = number_in("The data cell", content, cell)
+        return cell if computed.by_formula(cell) else result
 
     cells = list(area.cells())
     width = area.columns

@@ -153,19 +153,19 @@ def _listed(row: Row) -> tuple[float, ...]:
     texts, numbers = _contents(row), [_number(part) for part in _parts(row)]
     if len(texts) > 1:
         return tuple(map(float, range(len(texts))))
-    found = tuple(dict.fromkeys(each for each in numbers if each is not None))
-    if not found or len(found) < len(set(numbers)):
+    result = tuple(dict.fromkeys(each for each in numbers if each is not None))
+    if not result or len(result) < len(set(numbers)):
         slip = next((part for part, each in zip(_parts(row), numbers, strict=True) if each is None), "")
-        what = f"numbers and {slip!r}" if found else f"one value, {slip!r}" if slip else "nothing"
+        what = f"numbers and {slip!r}" if result else f"one value, {slip!r}" if slip else "nothing"
         message = f"{row.heading('Values')} lists {what}"
         hint = "List numbers or texts, separated by semicolons: 10; 20; 50, or red; blue"
         raise DefinitionError(message, where=row.cell("Values"), hint=hint)
-    return found
+    return result
 
 
 def _number(text: str) -> float | None:
     try:
-        found = float(text)
+        value = float(text)
     except ValueError:
         return None
-    return found if math.isfinite(found) else None
+    return value if math.isfinite(value) else None

@@ -81,7 +81,7 @@ def read_evidence(
         if not holds_rows(workbook, table):
             findings.notice(f"The table {table.table.name} holds no evidence", table.where)
     claims, taken = Claims("evidence", shared=True), {name_key(each.name): each.row for each in filters}
-    found = []
+    results = []
     for row in rows_of(workbook, tables, ("Name", "Reading"), _KNOWN, findings):
         each = _evidence(row, computed, claims, findings, switched)
         if each is None:
@@ -89,11 +89,11 @@ def read_evidence(
         if each.used and name_key(each.name) in taken:
             message = f"{each.name!r} is the name of a filter, too ({taken[name_key(each.name)]})"
             findings.problem(message, row.cell("Name"), "Give each its own name; state each fact once")
-        found.append(each)
-    for why, where in {each.unused: each.row for each in reversed(found) if not each.used}.items():
-        named = named_rows([each for each in found if each.unused == why])
+        results.append(each)
+    for why, where in {each.unused: each.row for each in reversed(results) if not each.used}.items():
+        named = named_rows([each for each in results if each.unused == why])
         findings.notice(f"Evidence that is not used, because {why.replace('it has', 'there is')}: {named}", where)
-    return tuple(found)
+    return tuple(results)
 
 
 def _evidence(
@@ -119,15 +119,15 @@ def _evidence(
     findings.attempt(_refuse_constant, row, cell, computed)
     if reading is None or sizes is None or len(findings.problems) > before:
         return None
-    found = Evidence(name, cell, row.where, reading, error, sizes, source, notes=notes)
-    findings.attempt(_refuse_wrong_sizes, row, found)
+    evidence = Evidence(name, cell, row.where, reading, error, sizes, source, notes=notes)
+    findings.attempt(_refuse_wrong_sizes, row, evidence)
     if len(findings.problems) > before:
         return None
     if not source:
         where = row.cell("Source") if row.has("Source") else row.where
         asker = vocabulary_of(row.workbook).asker
         findings.notice(f"The evidence {name!r} gives no Source, the first thing that {asker} asks for", where)
-    return found
+    return evidence
 
 
 def _used(row: Row, switched: Mapping[str, bool]) -> bool:
@@ -166,13 +166,13 @@ def _sizes(row: Row) -> dict[str, Parameter]:
         DefinitionError: a cell holds no number, or the same is said twice.
     """
     headings = {**SIZES, "also": "±"}
-    found = {key: value for key, heading in headings.items() if (value := parameter(row, heading)) is not None}
-    if "also" in found:
-        if "plus_minus" in found:
+    result = {key: value for key, heading in headings.items() if (value := parameter(row, heading)) is not None}
+    if "also" in result:
+        if "plus_minus" in result:
             message = f"{row.heading('Plus or minus')} and ± are both filled in"
             raise DefinitionError(message, where=row.cell("±"), hint="Clear one of them")
-        found["plus_minus"] = found.pop("also")
-    return found
+        result["plus_minus"] = result.pop("also")
+    return result
 
 
 def _refuse_constant(row: Row, cell: Cell, computed: Computed) -> None:
@@ -189,51 +189,53 @@ def _refuse_constant(row: Row, cell: Cell, computed: Computed) -> None:
     raise DefinitionError(message, where=row.where, hint="Point Cell to that quantity; what was measured is Reading")
 
 
-def _refuse_wrong_sizes(row: Row, found: Evidence) -> None:
+def _refuse_wrong_sizes(row: Row, evidence: Evidence) -> None:
     """Check what says how large the error is.
 
     Raises:
         DefinitionError: too much is said, or too little, or a number is impossible.
     """
-    given, kind = tuple(key for key in SIZES if key in found.sizes), ERRORS[found.error]
-    possible = _TAKES[found.error]
+    given, kind = tuple(key for key in SIZES if key in evidence.sizes), ERRORS[evidence.error]
+    possible = _TAKES[evidence.error]
     if given not in possible:
         known = {key for each in possible for key in each}
         wrong = next((key for key in given if key not in known), None)
         if wrong is not None:
-            message = f"The error {kind} of {found.name!r} takes no {SIZES[wrong]}"
-            raise DefinitionError(message, where=_cell_of(row, wrong), hint=_HOW[found.error])
+            message = f"The error {kind} of {evidence.name!r} takes no {SIZES[wrong]}"
+            raise DefinitionError(message, where=_cell_of(row, wrong), hint=_HOW[evidence.error])
         twice = " and ".join(SIZES[key] for key in given)
         what = f"is given twice, by {twice}" if given else "says nothing of its size"
         where = _cell_of(row, given[-1]) if given else row.where
-        raise DefinitionError(f"The error {kind} of {found.name!r} {what}", where=where, hint=_HOW[found.error])
-    numbers = {key: static_value(value, row.workbook) for key, value in found.sizes.items()}
-    reading = static_value(found.reading, row.workbook)
+        raise DefinitionError(f"The error {kind} of {evidence.name!r} {what}", where=where, hint=_HOW[evidence.error])
+    numbers = {key: static_value(value, row.workbook) for key, value in evidence.sizes.items()}
+    reading = static_value(evidence.reading, row.workbook)
     for key, value in numbers.items():
         if value is not None:
-            _refuse_size(found, key, value, _cell_of(row, key))
+            _refuse_size(evidence, key, value, _cell_of(row, key))
     if reading is not None and None not in numbers.values():
-        check_sizes(found, reading, {key: float(value) for key, value in numbers.items() if value is not None})
+        check_sizes(evidence, reading, {key: float(value) for key, value in numbers.items() if value is not None})
 
 
-def _refuse_size(found: Evidence, key: str, value: float, where: Cell) -> None:
+def _refuse_size(evidence: Evidence, key: str, value: float, where: Cell) -> None:
     if value < 0:
-        message = f"{SIZES[key]} ({show(value)}) of {found.name!r} is negative"
+        message = f"{SIZES[key]} ({show(value)}) of {evidence.name!r} is negative"
         raise DefinitionError(message, where=where, hint="Type how far the reading may be off, without a sign")
     if key == "percent" and value < 1:
-        message = f"Percent of {found.name!r} is {show(value)}, which may be {show(value)} % or {show(100 * value)} %"
+        message = (
+            f"Percent of {evidence.name!r} is {show(value)}, which may be {show(value)} % or {show(100 * value)} %"
+        )
         hint = "Type 5 for 5 %, in a cell without percent format; less than 1 % goes into another column"
         raise DefinitionError(message, where=where, hint=hint)
     if key == "percent" and value >= 100:
-        message = f"Percent ({show(value)}) of {found.name!r} must be below 100"
+        message = f"Percent ({show(value)}) of {evidence.name!r} must be below 100"
         raise DefinitionError(message, where=where, hint="Correct the number, or make the evidence one-sided")
 
 
-def check_sizes(found: Evidence, reading: float, sizes: Mapping[str, float]) -> None:
+def check_sizes(evidence: Evidence, reading: float, sizes: Mapping[str, float]) -> None:
     """Check the numbers of a row that is used.
 
     Args:
-        found: the row.
+        evidence: the row.
         reading: its reading.
         sizes: its sizes.
 
@@ -241,16 +243,16 @@ def check_sizes(found: Evidence, reading: float, sizes: Mapping[str, float]) -> 
         DefinitionError: they are no error of a reading.
     """
     for key, value in sizes.items():
-        _refuse_size(found, key, value, found.row)
-    if found.error == "lognormal" and reading <= 0:
-        message = f"The reading of {found.name!r} ({show(reading)}) has no logarithm"
-        raise DefinitionError(message, where=found.row, hint="A lognormal error is for quantities above 0")
-    one_sided = found.error in ("at least", "at most")
-    size = sizes.get("percent", 0.0) * (1.0 if found.error in ("instrument", "lognormal") else abs(reading))
+        _refuse_size(evidence, key, value, evidence.row)
+    if evidence.error == "lognormal" and reading <= 0:
+        message = f"The reading of {evidence.name!r} ({show(reading)}) has no logarithm"
+        raise DefinitionError(message, where=evidence.row, hint="A lognormal error is for quantities above 0")
+    one_sided = evidence.error in ("at least", "at most")
+    size = sizes.get("percent", 0.0) * (1.0 if evidence.error in ("instrument", "lognormal") else abs(reading))
     if one_sided or sizes.get("plus_minus") or sizes.get("std_dev") or sizes.get("resolution") or size:
         return
-    message = f"The error of {found.name!r} is 0: no reading is exact, and no trial would agree with it"
-    raise DefinitionError(message, where=found.row, hint=_HOW[found.error])
+    message = f"The error of {evidence.name!r} is 0: no reading is exact, and no trial would agree with it"
+    raise DefinitionError(message, where=evidence.row, hint=_HOW[evidence.error])
 
 
 def _cell_of(row: Row, key: str) -> Cell:

@@ -58,11 +58,11 @@ def read_filters(
         switched: see `is_used`.
     """
     rows = rows_of(workbook, tables, ("Name",), _FILTER_COLUMNS, findings)
-    found = tuple(each for row in rows if (each := _filter(row, computed, claims, findings, switched)) is not None)
-    idle = [each for each in found if not each.used]
+    filters = tuple(each for row in rows if (each := _filter(row, computed, claims, findings, switched)) is not None)
+    idle = [each for each in filters if not each.used]
     if idle:
         findings.notice(f"Filters that are not used, because Use is off: {named_rows(idle)}", idle[0].row)
-    return found
+    return filters
 
 
 def _filter(
@@ -121,9 +121,9 @@ def _refuse_contradiction(row: Row, limits: Mapping[str, Parameter | None]) -> N
     Raises:
         DefinitionError: no number can satisfy two of them.
     """
-    found = contradiction({key: static_value(limit, row.workbook) for key, limit in limits.items()})
-    if found is not None:
-        key, message = found
+    pair = contradiction({key: static_value(limit, row.workbook) for key, limit in limits.items()})
+    if pair is not None:
+        key, message = pair
         raise DefinitionError(message, where=row.cell(LIMITS[key]), hint="Correct one of them")
 
 
@@ -189,8 +189,8 @@ def read_checks(
         if not holds_rows(workbook, table):
             findings.notice(f"The table {table.table.name} holds no check", table.where)
     rows = rows_of(workbook, tables, ("Name",), _CHECK_COLUMNS, findings)
-    found = [_check(row, computed, claims, findings) for row in rows]
-    return tuple(each for each in found if each is not None)
+    result = [_check(row, computed, claims, findings) for row in rows]
+    return tuple(each for each in result if each is not None)
 
 
 def _check(row: Row, computed: Computed, claims: Claims, findings: Findings) -> Check | None:

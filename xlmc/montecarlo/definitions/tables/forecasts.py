@@ -54,8 +54,8 @@ def read_forecasts(
         findings: takes mistakes and remarks.
     """
     rows = rows_of(workbook, tables, ("Name",), _KNOWN, findings)
-    found = [_forecast(row, computed, central, claims, findings) for row in rows]
-    return tuple(each for each in found if each is not None)
+    result = [_forecast(row, computed, central, claims, findings) for row in rows]
+    return tuple(each for each in result if each is not None)
 
 
 def _forecast(row: Row, computed: Computed, central: float, claims: Claims, findings: Findings) -> Forecast | None:

@@ -152,9 +152,9 @@ def _cell_of_text(row: Row, text: str, where: Cell) -> Cell:
 
 
 def _cell_by_name(row: Row, name: str) -> Cell:
-    found = _name_in_sight(row.workbook, name, row.where)
-    if found is not None:
-        return cell_of_name(row.workbook, found, row.where)
+    defined_name = _name_in_sight(row.workbook, name, row.where)
+    if defined_name is not None:
+        return cell_of_name(row.workbook, defined_name, row.where)
     if row.has("Value") and not row.has("Cell"):
         return row.cell("Value")  # an input still to be filled in
     hint = "Fill in Value or Cell" if row.has("Value") else "Fill in Cell with a reference, such as =Inputs!B7"
@@ -169,8 +169,8 @@ def _name_in_sight(workbook: Workbook, name: str, where: Cell) -> DefinedName | 
     Raises:
         DefinitionError: the workbook's and the sheet's own differ, or only other sheets have one.
     """
-    found = [each for each in workbook.names if each.name.casefold() == name.strip().casefold()]
-    here = [each for each in found if each.sheet is None or each.sheet.casefold() == where.sheet.casefold()]
+    defined_names = [each for each in workbook.names if each.name.casefold() == name.strip().casefold()]
+    here = [each for each in defined_names if each.sheet is None or each.sheet.casefold() == where.sheet.casefold()]
     if len({each.text.strip().removeprefix("=").casefold() for each in here}) > 1:
         message = f"{name!r} is a name of the workbook and another one of this sheet"
         raise DefinitionError(message, where=where, hint="Fill in Cell with the reference that is meant")

@@ -83,19 +83,19 @@ def row_edit(
 def _contents(
     row: Row, family: str, parameters: Mapping[str, float], source: str
 ) -> dict[tuple[int, int], str | float | None]:
-    found: dict[tuple[int, int], str | float | None] = {}
+    result: dict[tuple[int, int], str | float | None] = {}
     for heading in (*PARAMETERS, *filter(is_percentile, row.headings)):
         if row.has(heading):
-            found[_at(row, heading)] = None
-    found[_at(row, "Distribution")] = family
+            result[_at(row, heading)] = None
+    result[_at(row, "Distribution")] = family
     for spec in FAMILIES[family].parameters:
         value = next(parameters[heading] for heading in spec.headings if heading in parameters)
         heading = next((each for each in spec.headings if row.has(each)), spec.heading)
         if row.has(heading) or value != spec.default:
-            found[_at(row, heading)] = float(value)
+            result[_at(row, heading)] = float(value)
     if row.has("Source"):
-        found[_at(row, "Source")] = source
-    return found
+        result[_at(row, "Source")] = source
+    return result
 
 
 def _at(row: Row, heading: str) -> tuple[int, int]:

@@ -80,22 +80,22 @@ def definition_tables(workbook: Workbook, findings: Findings) -> dict[str, list[
 
     A plain range counts too, where its sheet has the name of a table, or a defined name of a table stands for it.
     """
-    found: dict[str, list[DefinitionTable]] = {kind: [] for kind in KINDS}
+    result: dict[str, list[DefinitionTable]] = {kind: [] for kind in KINDS}
     for table in workbook.tables:
         kind = next((kind for kind in KINDS if table.name.casefold().startswith(kind)), None)
         if kind is not None:
-            found[kind].append(_with_headings(kind, table, findings))
+            result[kind].append(_with_headings(kind, table, findings))
         elif not table.name.casefold().startswith(CASE):
             _point_out_unknown(table, findings)
     for kind in KINDS:
-        area = None if found[kind] or kind == CONVERTED else _plain_range(workbook, kind)
+        area = None if result[kind] or kind == CONVERTED else _plain_range(workbook, kind)
         if area is not None:
             headings = [workbook.content(Cell(area.sheet, area.top, at)).value for at in _columns(area)]
             table = Table(kind, area, tuple(map(as_text, headings)))
             message = f"The range {area} is read as the table {kind}: it has its name, and is no table of Excel"
             findings.notice(message, Cell(area.sheet, area.top, area.left))
-            found[kind].append(_with_headings(kind, table, findings))
-    return found
+            result[kind].append(_with_headings(kind, table, findings))
+    return result
 
 
 def as_text(value: CellValue) -> str:
@@ -127,13 +127,13 @@ def _plain_range(workbook: Workbook, kind: str) -> Area | None:
     named = workbook.defined_name(kind)
     if named is not None:
         try:
-            found = parse_address(named.text)
+            reference = parse_address(named.text)
         except ValueError:
             return None
-        sheet = workbook.sheet_named(found.sheet)
-        if not isinstance(found, Area) or found.rows < _LEAST_ROWS or sheet is None:
+        sheet = workbook.sheet_named(reference.sheet)
+        if not isinstance(reference, Area) or reference.rows < _LEAST_ROWS or sheet is None:
             return None
-        return replace(found, sheet=sheet.name)
+        return replace(reference, sheet=sheet.name)
     sheet = workbook.sheet_named(kind)
     filled = sorted(at for at, content in sheet.cells.items() if not content.is_blank) if sheet is not None else []
     if sheet is None or not filled or any(table.area.sheet == sheet.name for table in workbook.tables):

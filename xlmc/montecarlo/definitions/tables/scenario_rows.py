@@ -89,14 +89,14 @@ def read_scenarios(
         findings: takes mistakes and remarks.
     """
     claims = Claims("scenario")
-    found: list[Scenario | None] = []
+    result: list[Scenario | None] = []
     headings = _Headings(workbook, tables, tuple(assumptions), tuple(filters))
     for table in tables["xlmc_scenarios"]:
         columns = [each for each in _columns(table, headings, findings) if each is not None]
         others = [written for written, _ in table.columns.values() if plain(written) not in map(plain, _KNOWN)]
         rows = rows_of(workbook, [table], ("Name",), (*_KNOWN, *others), findings)
-        found += [_scenario(row, columns, claims, findings) for row in rows]
-    return tuple(each for each in found if each is not None)
+        result += [_scenario(row, columns, claims, findings) for row in rows]
+    return tuple(each for each in result if each is not None)
 
 
 def _columns(table: DefinitionTable, headings: _Headings, findings: Findings) -> Iterator[_Column | None]:
@@ -169,18 +169,18 @@ class _Headings:
         Raises:
             DefinitionError: nothing, or more than one thing.
         """
-        found = [*self._of_names(heading), *self._of_columns(heading)]
-        if not found and name_key(heading) in self._faulty:
+        columns = [*self._of_names(heading), *self._of_columns(heading)]
+        if not columns and name_key(heading) in self._faulty:
             return None
-        if not found:
+        if not columns:
             return self._of_cell(heading, where)
-        if len(found) > 1:
+        if len(columns) > 1:
             message = f"{heading!r} may mean several things"
             hint = (
                 "Head the column with the row's name and a heading of its table, such as Friction Low, or with a cell"
             )
             raise DefinitionError(message, where=where, hint=hint)
-        return found[0]
+        return columns[0]
 
     def _of_names(self, heading: str) -> Iterator[_Column]:
         key = name_key(heading)
@@ -194,16 +194,16 @@ class _Headings:
         column.
         """
         key = name_key(heading)
-        found: dict[Cell, _Column] = {}
+        result: dict[Cell, _Column] = {}
         for name, row in self._rows:
             rest = key.removeprefix(f"{name} ") if key.startswith(f"{name} ") else ""
             if rest == "use" and row.table.kind in _SWITCHES:
-                found[row.where] = _Column(heading, (row.where, "use"), _switch_of(as_text(row.content("Name").value)))
+                result[row.where] = _Column(heading, (row.where, "use"), _switch_of(as_text(row.content("Name").value)))
             elif rest and row.has(rest) and plain(rest) != "name":
                 cell, of = row.cell(rest), (row.table.kind, name, rest)
-                found[cell] = _Column(heading, cell, _typed(cell, heading, of, clears=_is_number_column(rest)))
-        if found:
-            yield from found.values()
+                result[cell] = _Column(heading, cell, _typed(cell, heading, of, clears=_is_number_column(rest)))
+        if result:
+            yield from result.values()
             return
         for name, assumption in self._assumptions.items():
             rest = plain(key.removeprefix(f"{name} ")) if key.startswith(f"{name} ") else ""
@@ -258,13 +258,13 @@ def _of_assumption(heading: str, assumption: Assumption) -> _Column:
             return Frozen(name, None, where) if text.casefold() == "frozen" else Drawn(name, where)
         if re.fullmatch(_NUMBER, text):  # typed into a cell that was made a text, as ranges are
             return Frozen(name, _number(text), where)
-        if found := _BAND.fullmatch(text):
-            return Band(name, float(found[1]), float(found[2]), where)
-        if found := _RANGE.fullmatch(text):
-            return Range(name, _number(found[1]), _number(found[2]), where)
-        if (found := _ONE_END.fullmatch(text)) and found[1].casefold() in ("at least", "at most"):
-            least = found[1].casefold() == "at least"
-            end = _number(found[2])
+        if match := _BAND.fullmatch(text):
+            return Band(name, float(match[1]), float(match[2]), where)
+        if match := _RANGE.fullmatch(text):
+            return Range(name, _number(match[1]), _number(match[2]), where)
+        if (match := _ONE_END.fullmatch(text)) and match[1].casefold() in ("at least", "at most"):
+            least = match[1].casefold() == "at least"
+            end = _number(match[2])
             return Range(name, end if least else None, None if least else end, where)
         raise DefinitionError(f"{text!r} says nothing of the assumption {name!r}", where=where, hint=_OF_ASSUMPTION)
 
@@ -276,13 +276,13 @@ def _of_filter(heading: str, filter_: Filter) -> _Column:
 
     def take(content: CellContent, where: Cell) -> Change:
         text = as_text(content.value)
-        if found := _RANGE.fullmatch(text):
-            low, high = _number(found[1]), _number(found[2])
+        if match := _RANGE.fullmatch(text):
+            low, high = _number(match[1]), _number(match[2])
             return Limits(name, {"at_least": low, "at_most": high, "above": None, "below": None}, where)
-        if found := _ONE_END.fullmatch(text):
-            key = found[1].casefold().replace(" ", "_")
+        if match := _ONE_END.fullmatch(text):
+            key = match[1].casefold().replace(" ", "_")
             other = {"at_least": "above", "above": "at_least", "at_most": "below", "below": "at_most"}[key]
-            return Limits(name, {key: _number(found[2]), other: None}, where)
+            return Limits(name, {key: _number(match[2]), other: None}, where)
         raise DefinitionError(f"{text!r} is not a limit of the filter {name!r}", where=where, hint=_OF_FILTER)
 
     return _Column(heading, ("filter", name_key(name)), take)

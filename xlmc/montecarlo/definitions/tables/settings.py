@@ -153,9 +153,9 @@ def _word(row: Row, kind: Word, words: Collection[str]) -> str:
     """Return the one of the words that was typed, in any case; a number is none, as Excel changes how it is typed."""
     typed = required_text(row, "Value")
     spelling = kind.spelling or plain
-    found = {spelling(word): word for word in words} | kind.also()
-    if spelling(typed) in found and isinstance(row.content("Value").value, str):
-        return found[spelling(typed)]
+    result = {spelling(word): word for word in words} | kind.also()
+    if spelling(typed) in result and isinstance(row.content("Value").value, str):
+        return result[spelling(typed)]
     *some, last = words
     hint = kind.hint or (did_you_mean(typed, words) if kind.suggest else f"Use {', '.join(some)} or {last}")
     raise DefinitionError(kind.fault.format(repr(typed)), where=row.cell("Value"), hint=hint)
@@ -189,11 +189,11 @@ def _whole_number_as_text(row: Row, name: str) -> int | None:
     text = row.content("Value").value
     if not isinstance(text, str):
         return None
-    found = typed_whole_number(text)
-    if found is None:
+    value = typed_whole_number(text)
+    if value is None:
         message = f"{name} is {as_text(text)!r}, which is not a whole number"
         raise DefinitionError(message, where=row.cell("Value"), hint="Type it like 200000, 200,000, 2e5 or 200k")
-    return found
+    return value
 
 
 def _goal_settings() -> dict[str, Callable[[Row, Findings], Any]]:

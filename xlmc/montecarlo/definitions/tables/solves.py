@@ -89,11 +89,11 @@ def _refuse_formula(by: Cell, where: Cell, computed: Computed) -> None:
 
 
 def _number(row: Row, heading: str) -> Parameter:
-    found = parameter(row, heading)
-    if found is None:
+    result = parameter(row, heading)
+    if result is None:
         message = f"{row.heading(heading)} is blank"
         raise DefinitionError(message, where=row.cell(heading), hint="Type a number, or a formula that gives one")
-    return found
+    return result
 
 
 def _root(row: Row) -> Which | None:

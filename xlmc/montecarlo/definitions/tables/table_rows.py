@@ -252,14 +252,14 @@ def word_in(row: Row, heading: str, words: type[Named]) -> Named | None:
         DefinitionError: the cell holds another word.
     """
     text = optional_text(row, heading)
-    found = named(words, text) if text else None
-    if text and found is None:
+    result = named(words, text) if text else None
+    if text and result is None:
         known = [each.value for each in words]
         meant = nearest(text, known)
         hint = f"Did you mean {meant}? " if meant else ""
         hint += f"Type {', '.join(known[:-1])} or {known[-1]}; a column of notes needs another heading"
         raise DefinitionError(f"{row.heading(heading)} {text!r} is unknown", where=row.cell(heading), hint=hint)
-    return found
+    return result
 
 
 def logical(row: Row, heading: str) -> bool:

@@ -154,9 +154,9 @@ class Sharing:
     def _next_tasks(self, wanted: int) -> list[Task]:
         """Take the next tasks; none where there are no more, or where too many blocks are ahead of their turn."""
         free = _AHEAD * self._runners - (self._given - self._turn)
-        found = list(islice(self._tasks, max(0, min(wanted, free))))
-        self._given += len(found)
-        return found
+        tasks = list(islice(self._tasks, max(0, min(wanted, free))))
+        self._given += len(tasks)
+        return tasks
 
     def _receive(self) -> None:
         """Wait for the next answer and keep its blocks until their turn."""

@@ -124,8 +124,8 @@ def _check_workers(client: Client, scheduler: str) -> None:
         hint = f"Start some: dask worker {scheduler}"
         raise SimulationError("the scheduler has no workers", where=scheduler, hint=hint) from error
     ours = {name: software()[name] for name in ("xlmc", *LIBRARIES)}
-    found = client.get_versions(packages=["xlmc", *LIBRARIES])["workers"]
-    for address, of_worker in found.items():
+    value = client.get_versions(packages=["xlmc", *LIBRARIES])["workers"]
+    for address, of_worker in value.items():
         theirs = {name: version for name, version in of_worker["packages"].items() if version}
         check_software(ours, theirs, f"worker {address}")
 

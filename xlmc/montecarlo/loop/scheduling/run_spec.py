@@ -96,9 +96,9 @@ def software() -> dict[str, str]:
     """Name -> version of what decides the last bits of a result here, and the processor's vector instructions."""
     import numpy
 
-    found: dict[str, list[str]] = numpy.show_config(mode="dicts")["SIMD Extensions"]  # type: ignore[assignment]
+    result: dict[str, list[str]] = numpy.show_config(mode="dicts")["SIMD Extensions"]  # type: ignore[assignment]
     own = {"xlmc": __version__, "Python": platform.python_version()}
-    features = [platform.machine(), *found.get("baseline", []), *found.get("found", [])]
+    features = [platform.machine(), *result.get("baseline", []), *result.get("found", [])]
     return own | {name: _version(name) for name in LIBRARIES} | {"processor": " ".join(features)}
 
 
@@ -118,8 +118,8 @@ def check_software(ours: Mapping[str, str], theirs: Mapping[str, str], where: st
         SimulationError: a version differs.
     """
     for name, wanted in ours.items():
-        found = theirs.get(name)
-        if found != wanted:
+        text = theirs.get(name)
+        if text != wanted:
             hint = "Results would depend on which worker ran which trials: use the same software on all"
-            message = f"the software differs: {name} is {found or 'missing'} there and {wanted} here"
+            message = f"the software differs: {name} is {text or 'missing'} there and {wanted} here"
             raise SimulationError(message, where=where, hint=hint)

@@ -83,11 +83,11 @@ class Sequences:
         self._waiting_count = self._waiting[0].size
 
     def _take(self, sequence: Floats) -> None:
-        found = np.array([sequence.mean(), sequence.std(ddof=1), *np.quantile(sequence, self._ends)])
+        values = np.array([sequence.mean(), sequence.std(ddof=1), *np.quantile(sequence, self._ends)])
         self.count += 1
-        apart = found - self._average
+        apart = values - self._average
         self._average += apart / self.count
-        self._squares += apart * (found - self._average)
+        self._squares += apart * (values - self._average)
 
     def excess(self, digits: int) -> float:
         """Return the largest 2s over δ; infinite before there are two sequences."""

@@ -70,16 +70,16 @@ def wanted_of(index: int, central: float, asked: Sequence[str]) -> list[Wanted]:
     >>> [wanted.percent for wanted in wanted_of(0, 0.5, ("mean", "range", "p90"))]
     [None, 25.0, 75.0, 90.0]
     """
-    found: dict[Wanted, None] = {}
+    result: dict[Wanted, None] = {}
     for name in asked:
         if name == "range":
             tail = 50.0 * (1.0 - central)
-            found |= {Wanted(index, tail): None, Wanted(index, 100.0 - tail): None}
+            result |= {Wanted(index, tail): None, Wanted(index, 100.0 - tail): None}
         elif name in ("mean", "sd"):
-            found[Wanted(index, spread=name == "sd")] = None
+            result[Wanted(index, spread=name == "sd")] = None
         else:
-            found[Wanted(index, float(name[1:]))] = None
-    return list(found)
+            result[Wanted(index, float(name[1:]))] = None
+    return list(result)
 
 
 class UntilPrecise:
@@ -94,8 +94,8 @@ class UntilPrecise:
 
     def __init__(self, asked: Precision, forecasts: Sequence[tuple[int, str, float]]) -> None:
         self._asked, self._names = asked, [name for _, name, _ in forecasts]
-        found = [wanted for index, _, central in forecasts for wanted in wanted_of(index, central, asked.numbers)]
-        self._wanted = sorted(found, key=lambda wanted: wanted.percent is not None)  # the cheap ones first
+        results = [wanted for index, _, central in forecasts for wanted in wanted_of(index, central, asked.numbers)]
+        self._wanted = sorted(results, key=lambda wanted: wanted.percent is not None)  # the cheap ones first
         spread = "sd" in asked.numbers
         self._moments = {index: RunningMoments(spread=spread) for index, _, _ in forecasts}
         self._checkpoints = Checkpoints()
@@ -135,9 +135,9 @@ class UntilPrecise:
 
     def _excess(self, wanted: Wanted, columns: Columns) -> float:
         """Divide the half width by what it may be; infinite where there is no interval."""
-        found = self._estimate(wanted, columns)
-        half = half_width(found)
-        allowed = self._asked.tolerance * (abs(found.value) if self._asked.relative else 1.0)
+        estimate = self._estimate(wanted, columns)
+        half = half_width(estimate)
+        allowed = self._asked.tolerance * (abs(estimate.value) if self._asked.relative else 1.0)
         if allowed == 0.0:
             same = self._moments[wanted.index].deviation == 0.0  # no share of 0 is ever known to a part of itself
             return 0.0 if half == 0.0 or same else math.inf

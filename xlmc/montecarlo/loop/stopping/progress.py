@@ -93,10 +93,10 @@ class RunningMoments:
     def _standardised(self) -> Floats:
         """Return the means of the powers of the standardised values."""
         root = (self._sums[2] / self.n) ** 0.5
-        found = self._sums / self.n
-        for power in range(2, found.size):
-            found[power:] /= root if power > 2 else root * root
-        return found
+        values = self._sums / self.n
+        for power in range(2, values.size):
+            values[power:] /= root if power > 2 else root * root
+        return values
 
 
 def _sums_of_powers(apart: Floats, count: int) -> Floats:

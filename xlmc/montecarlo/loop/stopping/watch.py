@@ -148,8 +148,8 @@ def _named(names: Sequence[str], forecasts: Sequence[Forecast], texts: Collectio
         if name_key(name) not in index_of:
             hint = f"choose from {', '.join(map(repr, numbers))}"
             raise SimulationError(f"there is no forecast {name!r}", hint=hint)
-    found = dict.fromkeys(index_of[name_key(name)] for name in names) or numbers.values()
-    return [(index, forecasts[index].name, forecasts[index].central) for index in found]
+    result = dict.fromkeys(index_of[name_key(name)] for name in names) or numbers.values()
+    return [(index, forecasts[index].name, forecasts[index].central) for index in result]
 
 
 def may_end_early(sampling: str) -> bool:

@@ -53,15 +53,15 @@ def answer_blocks(
         yield Paragraph(sentence, "warning")
     asked = tuple(question(simulation))
     yield Paragraph("".join(each.text for each in asked), phrases=asked)
-    said = [each for each in statements(simulation) if each.forecast in names]
-    if said:
-        leads = tuple(each.forecast if each.text.startswith(f"{each.forecast}: ") else "" for each in said)
+    messages = [each for each in statements(simulation) if each.forecast in names]
+    if messages:
+        leads = tuple(each.forecast if each.text.startswith(f"{each.forecast}: ") else "" for each in messages)
         texts = (
             f"{also_named(lead, same or {})}{each.text.removeprefix(lead)}."
-            for lead, each in zip(leads, said, strict=True)
+            for lead, each in zip(leads, messages, strict=True)
         )
         yield Bullets(tuple(texts), leads=leads)
-        yield Paragraph(meaning(simulation.model.workbook, said), "small")
+        yield Paragraph(meaning(simulation.model.workbook, messages), "small")
     rows = [replace(row, name=also_named(row.name, same or {})) for row in rows]
     yield _answers(rows)
     yield from _thresholds(rows)
@@ -198,13 +198,13 @@ def _range_sentences(rows: Sequence[SummaryRow]) -> list[str]:
 
 def _base_sentences(simulation: RunResult) -> list[str]:
     """Return the sentences that say what the base case is, and which filters it would not pass."""
-    found = base_case(simulation)
-    if found is None:
+    result = base_case(simulation)
+    if result is None:
         return ["There is no base case: the cell of an assumption is blank."]
-    said = "The base case has every assumption at the value in its cell"
-    if not found.rejected_by:
-        return [f"{said}."]
-    return [f"{said}. As a trial it would be rejected by: {', '.join(found.rejected_by)}."]
+    message = "The base case has every assumption at the value in its cell"
+    if not result.rejected_by:
+        return [f"{message}."]
+    return [f"{message}. As a trial it would be rejected by: {', '.join(result.rejected_by)}."]
 
 
 def section(material: Material) -> Iterator[Block]:

@@ -79,31 +79,31 @@ def assumption_rows(simulation: RunResult, name: str) -> list[tuple[Content, ...
     """Return a row of the draws before filtering and one of the accepted ones, or one of all where no filter acts:
     which they are, trials, mean, standard deviation and percentiles; none where nothing was drawn.
     """
-    found, form = filter_effect_of(simulation, name), simulation.model.input_forms.get(name, PLAIN)
-    if found is None:
+    effect, form = filter_effect_of(simulation, name), simulation.model.input_forms.get(name, PLAIN)
+    if effect is None:
         return []
     if not simulation.filters_act:
-        return [_row("all", found.prior, form)]
-    return [_row("before", found.prior, form), _row("accepted", found.accepted, form, "second ")]
+        return [_row("all", effect.prior, form)]
+    return [_row("before", effect.prior, form), _row("accepted", effect.accepted, form, "second ")]
 
 
-def _row(which: str, found: Marginal, form: Form, second: str = "") -> tuple[Content, ...]:
+def _row(which: str, marginal: Marginal, form: Form, second: str = "") -> tuple[Content, ...]:
     look = f"{second}number"
     return (
         Shown(which, look="second" if second else "text"),
-        Shown(found.trials, cells.count(0).format, look),
-        Measured(found.mean, form=form, look=look, nothing=NONE),
-        Measured(found.standard_deviation, "spread", form, look, nothing=NONE),
-        *(Measured(each, form=form, look=look, nothing=NONE) for each in found.percentiles.values()),
+        Shown(marginal.trials, cells.count(0).format, look),
+        Measured(marginal.mean, form=form, look=look, nothing=NONE),
+        Measured(marginal.standard_deviation, "spread", form, look, nothing=NONE),
+        *(Measured(each, form=form, look=look, nothing=NONE) for each in marginal.percentiles.values()),
     )
 
 
-def assumption_change(found: FilterEffect) -> tuple[Measured, Measured]:
+def assumption_change(effect: FilterEffect) -> tuple[Measured, Measured]:
     """Return how far the mean moved, in standard deviations before filtering, and what part of these is left."""
-    moved, narrowed = abs(found.shift.value) >= _MOVED, found.narrowing.value <= _NARROWED
+    moved, narrowed = abs(effect.shift.value) >= _MOVED, effect.narrowing.value <= _NARROWED
     return (
-        Measured(found.shift, look="moved" if moved else "number", nothing=NONE),
-        Measured(found.narrowing, look="moved" if narrowed else "number", nothing=NONE),
+        Measured(effect.shift, look="moved" if moved else "number", nothing=NONE),
+        Measured(effect.narrowing, look="moved" if narrowed else "number", nothing=NONE),
     )
 
 

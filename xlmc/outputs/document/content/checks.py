@@ -36,11 +36,11 @@ def check_blocks(simulation: RunResult) -> Iterator[Block]:
 
 
 def _row(check: CheckResult) -> tuple[Content, ...]:
-    found = check.base.found
+    text = check.base.content
     return (
         check.name,
         str(check.cell),
-        Shown(NONE if found is None else found, look="warning" if check.holds is False else "text"),
+        Shown(NONE if text is None else text, look="warning" if check.holds is False else "text"),
         cells.count(check.failed),
         Measured(check.share, "share"),
         check.because or NONE,

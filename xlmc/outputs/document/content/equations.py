@@ -16,12 +16,12 @@ __all__ = ["section"]
 
 def section(material: Material) -> Iterator[Block]:
     """Yield the equations."""
-    found = equations_of(material.simulation.model)
-    if not found:
+    equations = equations_of(material.simulation.model)
+    if not equations:
         return
     yield Paragraph(
         "The equations as the workbook prints them beside the cells that the answers need, with the source that it "
         "names. xlmc computes the cells' formulas, not these texts."
     )
     heads = ("Quantity", "Symbol", "Units", "Equation", "Source")
-    yield Table("", heads, tuple(map(tuple, found)), (), (2.5, 0.9, 0.7, 4.0, 1.7), "The equations.")
+    yield Table("", heads, tuple(map(tuple, equations)), (), (2.5, 0.9, 0.7, 4.0, 1.7), "The equations.")

@@ -58,37 +58,37 @@ def evidence_blocks(simulation: RunResult, names: Collection[str], *, full: bool
         names: of the forecasts to show.
         full: with standard deviations and ranges.
     """
-    found = simulation.agreement
-    if found is None:
+    agreement = simulation.agreement
+    if agreement is None:
         return
-    yield Paragraph(f"{capitalised(found.sentence)}.", "warning" if found.verdict in _BAD else "text")
-    for remark in found.remarks:
-        if remark != found.sentence:
+    yield Paragraph(f"{capitalised(agreement.sentence)}.", "warning" if agreement.verdict in _BAD else "text")
+    for remark in agreement.remarks:
+        if remark != agreement.sentence:
             yield Paragraph(f"{capitalised(remark)}.")
-    yield item_table(found)
-    yield Paragraph(trials_sentence(found), "small")
+    yield item_table(agreement)
+    yield Paragraph(trials_sentence(agreement), "small")
     yield Paragraph(_MEANING, "small")
-    yield from [_moves(simulation, found, names)] if full else means_tables(simulation, found, names)
+    yield from [_moves(simulation, agreement, names)] if full else means_tables(simulation, agreement, names)
     yield Paragraph(_MOVES_MEANING, "small")
     yield _sources(simulation)
 
 
-def trials_sentence(found: Agreement) -> str:
+def trials_sentence(agreement: Agreement) -> str:
     """Say what the evidence is judged by."""
     return (
-        f"Judged by {count_text(found.trials)} trials of the same seed, of which "
-        f"{count_text(found.past)} pass all other filters."
+        f"Judged by {count_text(agreement.trials)} trials of the same seed, of which "
+        f"{count_text(agreement.past)} pass all other filters."
     )
 
 
-def item_table(found: Agreement) -> Table:
+def item_table(agreement: Agreement) -> Table:
     """Return each item, alone and with the others."""
-    several = len(found.items) > 1
-    rows = [_item(each, several) for each in found.items]
+    several = len(agreement.items) > 1
+    rows = [_item(each, several) for each in agreement.items]
     if several:
-        best = "" if found.best_z is None else Shown(found.best_z, "0.00")
-        whole = (Measured(found.together, "share"), Measured(None), Measured(found.ratio))
-        rows.append(("All together", "", *whole, "", best, found.verdict.value))
+        best = "" if agreement.best_z is None else Shown(agreement.best_z, "0.00")
+        whole = (Measured(agreement.together, "share"), Measured(None), Measured(agreement.ratio))
+        rows.append(("All together", "", *whole, "", best, agreement.verdict.value))
     widths = (1.7, 2.2, 1.3, 1.3, 1.3, 1.1, 0.7, 1.3)
     return Table("", _ITEM_HEADS, tuple(rows), (5, 6), widths, "Each item, and with the others.")
 
@@ -106,10 +106,10 @@ def _item(item: ItemAgreement, several: bool) -> tuple[Content, ...]:
     )
 
 
-def _moves(simulation: RunResult, found: Agreement, names: Collection[str]) -> Table:
+def _moves(simulation: RunResult, agreement: Agreement, names: Collection[str]) -> Table:
     """Return what each set of items makes of each forecast."""
     heads = ("Forecast", "With", "Effective trials", "Mean", "Standard deviation", "Range from", "to")
-    rows = [_move(simulation, each) for each in found.answers if each.forecast in names]
+    rows = [_move(simulation, each) for each in agreement.answers if each.forecast in names]
     return Table("", heads, tuple(rows), caption="What each item moves.")
 
 
@@ -132,13 +132,13 @@ def _mean(simulation: RunResult, answer: Answer) -> Measured:
     return Measured(answer.mean, "share" if form.kind is Kind.YES_NO else "number", form, nothing=NONE)
 
 
-def means_tables(simulation: RunResult, found: Agreement, names: Collection[str]) -> Iterator[Table]:
+def means_tables(simulation: RunResult, agreement: Agreement, names: Collection[str]) -> Iterator[Table]:
     """Yield the means of forecasts side by side, with a row for each set of items."""
-    chosen = [each for each in found.found.forecasts if each in names]
+    chosen = [each for each in agreement.evidence_trials.forecasts if each in names]
     for first in range(0, len(chosen), _MOST):
         shown = chosen[first : first + _MOST]
         rows: dict[str, list[Answer]] = {}
-        for each in found.answers:
+        for each in agreement.answers:
             if each.forecast in shown:
                 rows.setdefault(each.used, []).append(each)
         yield Table(

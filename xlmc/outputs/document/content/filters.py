@@ -76,12 +76,12 @@ def _in_brief(simulation: RunResult) -> Iterator[Block]:
 
 
 def _accepted_sentence(simulation: RunResult) -> str:
-    said = "A trial is accepted when all filters hold."
+    message = "A trial is accepted when all filters hold."
     if simulation.rare is not None:
         of = f"the first {count_text(simulation.trials)}"
-        return f"{said} Rejected trials are counted among {of}, drawn before the search for accepted ones began."
+        return f"{message} Rejected trials are counted among {of}, drawn before the search for accepted ones began."
     return (
-        f"{said} Of {count_text(simulation.trials)} trials, {count_text(simulation.accepted)} were accepted "
+        f"{message} Of {count_text(simulation.trials)} trials, {count_text(simulation.accepted)} were accepted "
         f"({share_text(simulation.acceptance)})."
     )
 
@@ -163,11 +163,11 @@ def _count(trials: int, of: int) -> tuple[Content, Content]:
 
 def _errors(simulation: RunResult) -> Iterator[Block]:
     """Yield the errors in cells; nothing where there were none."""
-    found = errors_met(simulation)
-    if found:
+    errors = errors_met(simulation)
+    if errors:
         rows = [
             (met.name, met.kind, str(met.cell), met.error, *_count(met.trials, _among(simulation, met)))
-            for met in found
+            for met in errors
         ]
         heads = ("Name", "In a", "Cell", "Error", "Trials", "Share")
         yield Table("", heads, tuple(rows), caption="Errors in cells.")

@@ -43,14 +43,14 @@ __all__ = [
 NOT_MOVED: Final = "The accepted trials do not say by how much it could be moved."
 
 
-def limit_blocks(found: Sensitivities) -> Iterator[Block]:
+def limit_blocks(result: Sensitivities) -> Iterator[Block]:
     """Yield what moving a limit means, then the charts and tables of each; nothing where no filter has one."""
-    if not (found.filter_limits or found.varying_limits or found.omitted_limits):
+    if not (result.filter_limits or result.varying_limits or result.omitted_limits):
         return
-    for sentence in limit_sentences(found):
+    for sentence in limit_sentences(result):
         yield Paragraph(sentence, "small")
-    forecasts = {each.forecast: each for each in found.forecasts}
-    for limit in found.filter_limits:
+    forecasts = {each.forecast: each for each in result.forecasts}
+    for limit in result.filter_limits:
         yield Heading(limit_heading(limit), 2)
         if limit.points:
             yield from limit_figures(limit, forecasts)
@@ -69,23 +69,25 @@ def limit_text(limit: FilterLimit) -> str:
     return limit.form.number(limit.limit, typed=True)
 
 
-def limit_sentences(found: Sensitivities) -> list[str]:
+def limit_sentences(result: Sensitivities) -> list[str]:
     """Sentences that say what moving a limit means."""
-    said = [
+    messages = [
         "One limit is moved; all others stay. A tighter limit keeps some of the accepted trials. A looser one also "
         "accepts trials that nothing else rejects; these come from the run's first trials, so their errors are larger. "
         "Changes and slopes compare runs that share trials, and their errors allow for that. A limit is evidence: "
         "this sheet shows how much its exact value matters, not which value is right."
     ]
-    if found.varying_limits:
-        said.append(f"Not moved, because the limit varies with the assumptions: {', '.join(found.varying_limits)}.")
-    if found.omitted_limits:
-        said.append(
-            f"{count_text(found.omitted_limits)} further limits were left out: the last of very many, "
+    if result.varying_limits:
+        messages.append(
+            f"Not moved, because the limit varies with the assumptions: {', '.join(result.varying_limits)}."
+        )
+    if result.omitted_limits:
+        messages.append(
+            f"{count_text(result.omitted_limits)} further limits were left out: the last of very many, "
             "or all of them where "
             "accepted trials are rare, because trials near a limit are then not among those drawn before the search."
         )
-    return said
+    return messages
 
 
 def acceptance_table(limit: FilterLimit) -> Table:

@@ -46,14 +46,14 @@ def _sentences(simulation: RunResult, pairs: Sequence[Pair]) -> Iterator[str]:
     counted = count_text(min(trials))
     if len(trials) > 1:
         counted = f"{counted} to {count_text(max(trials))}"
-    said = (
+    message = (
         "A limit is the forecast's threshold or, if it has none, its median; it is used as the number printed here. A "
         "yes/no answer lies above its limit where it is a yes. Probabilities are shares of the accepted trials in "
         f"which both forecasts are numbers ({counted})."
     )
     if max(ranked) < max(trials):
-        said += f" Rank correlations come from the first {count_text(max(ranked))} of them."
-    yield f"{said} A > B is given where both have the same units."
+        message += f" Rank correlations come from the first {count_text(max(ranked))} of them."
+    yield f"{message} A > B is given where both have the same units."
     if len(pairs) == PAIRS and len(simulation.model.forecasts) > _FORECASTS:
         yield f"At most {PAIRS} pairs of forecasts are here, the first ones of the workbook."
 

@@ -24,21 +24,21 @@ _POINTS: Final = "Difference, points"
 
 
 def scenario_blocks(
-    found: Sequence[ScenarioAnswers], impossible: Mapping[str, str], names: Collection[str] | None = None
+    answers: Sequence[ScenarioAnswers], impossible: Mapping[str, str], names: Collection[str] | None = None
 ) -> Iterator[Block]:
     """Yield what each scenario changes and how much is accepted; then its answers, a table a forecast.
 
     Args:
-        found: of the workbook itself, then of each scenario; empty where none was run.
+        answers: of the workbook itself, then of each scenario; empty where none was run.
         impossible: why a scenario has no answers, by its name.
         names: of the forecasts to show; None for all.
     """
-    if not found:
+    if not answers:
         return
-    for each in found[1:]:
+    for each in answers[1:]:
         for warning in each.warnings:
             yield Paragraph(f"Do not use the answers of {each.name!r} as they are: {warning}", "warning")
-    rows: list[tuple[Content, ...]] = [_accepted(each) for each in found]
+    rows: list[tuple[Content, ...]] = [_accepted(each) for each in answers]
     rows += [(name, "", Measured(None), Measured(None), f"Not possible: {why}") for name, why in impossible.items()]
     yield Table(
         "",
@@ -48,12 +48,12 @@ def scenario_blocks(
         caption="Scenarios: what is changed, and how many trials are accepted.",
         spans=(1, 1, 1, 1, 7),
     )
-    for index, answer in enumerate(found[0].forecasts):
+    for index, answer in enumerate(answers[0].forecasts):
         if names is None or answer.forecast.name in names:
-            heads = answer_heads(found, index)
+            heads = answer_heads(answers, index)
             widths = (1.8, *[1.4] * (len(heads) - 1))
-            yield Table("", heads, tuple(answer_rows(found, index)), widths=widths, caption=f"{answer.title}.")
-    for sentence in _sentences(found):
+            yield Table("", heads, tuple(answer_rows(answers, index)), widths=widths, caption=f"{answer.title}.")
+    for sentence in _sentences(answers):
         yield Paragraph(sentence, "small")
 
 
@@ -76,19 +76,19 @@ def _changes(each: ScenarioAnswers) -> str:
     return f"{changes_text(each.scenario, each.run.model.definitions)}{note}"
 
 
-def answer_heads(found: Sequence[ScenarioAnswers], index: int) -> tuple[str, ...]:
+def answer_heads(answers: Sequence[ScenarioAnswers], index: int) -> tuple[str, ...]:
     """Return the headings of the table of the forecast at `index`."""
-    states = [each.forecasts[index] for each in found]
+    states = [each.forecasts[index] for each in answers]
     above = _above_head(states)
     heads = ["Scenario", *(heading for pair in _pairs(states) for heading in pair)]
     return (*heads, *([above, _POINTS] if above else []))
 
 
-def answer_rows(found: Sequence[ScenarioAnswers], index: int) -> Iterator[tuple[Content, ...]]:
+def answer_rows(answers: Sequence[ScenarioAnswers], index: int) -> Iterator[tuple[Content, ...]]:
     """Yield a row for the workbook itself and for each scenario, of the forecast at `index`."""
-    states = [each.forecasts[index] for each in found]
+    states = [each.forecasts[index] for each in answers]
     ranges, above = _has_ranges(states), bool(_above_head(states))
-    for each, answer in zip(found, states, strict=True):
+    for each, answer in zip(answers, states, strict=True):
         row: list[Content] = [each.name]
         numbers = (("mean", answer.mean), ("low", answer.low), ("high", answer.high))
         for key, value in numbers if ranges else numbers[:1]:
@@ -128,15 +128,15 @@ def _above_head(states: Sequence[ForecastAnswer]) -> str:
     return f"Above {states[0].form.number(limits.pop())}" if len(limits) == 1 else "Above threshold"
 
 
-def _sentences(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
+def _sentences(answers: Sequence[ScenarioAnswers]) -> Iterator[str]:
     """Yield the sentences that say what the differences and their errors are."""
     yield "Each scenario is a run of its own, with other contents in some cells. “As it is” is the workbook itself."
-    few = [f"{each.name!r} ({count_text(each.run.accepted)})" for each in found if 0 < each.run.accepted < FEW]
+    few = [f"{each.name!r} ({count_text(each.run.accepted)})" for each in answers if 0 < each.run.accepted < FEW]
     if few:
         yield f"Few trials were accepted: {', '.join(few)}. Errors of means and differences can be too small there."
-    yield from _different_options(found)
+    yield from _different_options(answers)
     yield "Differences are those to the workbook as it is: a positive one means that the scenario gives more."
-    if all(each.paired for each in found):
+    if all(each.paired for each in answers):
         yield (
             "All runs draw the same random numbers: each assumption has its own stream. What they have in common "
             "cancels in a difference, so that its ± is mostly smaller than those of the two numbers."
@@ -148,22 +148,22 @@ def _sentences(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
         )
 
 
-def _different_options(found: Sequence[ScenarioAnswers]) -> Iterator[str]:
+def _different_options(answers: Sequence[ScenarioAnswers]) -> Iterator[str]:
     """Yield which thresholds and central ranges scenarios change."""
-    for index, own in enumerate(found[0].forecasts):
-        name, states = own.forecast.name, [(each.name, each.forecasts[index].forecast) for each in found]
+    for index, own in enumerate(answers[0].forecasts):
+        name, states = own.forecast.name, [(each.name, each.forecasts[index].forecast) for each in answers]
         if len({each.threshold for _, each in states}) > 1:
             limits = [
                 (state, "none" if each.threshold is None else own.form.number(each.threshold)) for state, each in states
             ]
-            said = [f"{state!r} {limit}" for state, limit in limits]
-            yield f"Thresholds of {name!r}: {', '.join(said)}."
+            messages = [f"{state!r} {limit}" for state, limit in limits]
+            yield f"Thresholds of {name!r}: {', '.join(messages)}."
         if len({each.central for _, each in states}) > 1:
-            said = [f"{state!r} {percent(each.central)}" for state, each in states]
-            yield f"Central ranges of {name!r}: {', '.join(said)}."
+            messages = [f"{state!r} {percent(each.central)}" for state, each in states]
+            yield f"Central ranges of {name!r}: {', '.join(messages)}."
 
 
 def section(material: Material) -> Iterator[Block]:
     """Yield the answers of scenarios."""
-    found = scenario_answers(material.simulation)
-    return scenario_blocks(found, impossible_scenarios(material.simulation), material.forecasts)
+    answers = scenario_answers(material.simulation)
+    return scenario_blocks(answers, impossible_scenarios(material.simulation), material.forecasts)

@@ -78,67 +78,69 @@ SPIDER: Final = "Spider: the same over five points of each assumption's own dist
 BENT: Final = "Where the table says that it does not only rise or fall, the bar hides what lies between."
 
 
-def sensitivity_sentences(found: Sensitivities, source: SourceBook) -> list[str]:
+def sensitivity_sentences(result: Sensitivities, source: SourceBook) -> list[str]:
     """Return the sentences that say what the numbers are and rest on."""
-    said = [
+    messages = [
         "Influences are those among the accepted trials: filters change which assumptions matter. ± is the standard "
         "error that comes from a limited number of trials. No sensitivity says whether the model "
         f"{vocabulary_of(source).fits}."
     ]
-    if found.sobol_reason:
-        said.append(f"{found.sobol_reason}.")
-    if found.examined < found.accepted:
-        said.append(
-            f"Influences rest on {count_text(found.examined)} of the {count_text(found.accepted)} "
+    if result.sobol_reason:
+        messages.append(f"{result.sobol_reason}.")
+    if result.examined < result.accepted:
+        messages.append(
+            f"Influences rest on {count_text(result.examined)} of the {count_text(result.accepted)} "
             "accepted trials; the variance explained, "
             "where the forecast jumps or bends, on up to "
             f"{count_text(131_072)}."
         )
-    if any(each.explained_at_least for forecast in found.forecasts for each in forecast.influences):
-        said.append(
+    if any(each.explained_at_least for forecast in result.forecasts for each in forecast.influences):
+        messages.append(
             "Variance explained “at least” so much: the forecast jumps or bends more finely than the trials show, or a "
             "few trials decide the number, and it may be larger than its error says. More trials help."
         )
-    if omitted := max((each.omitted for each in found.forecasts), default=0):
-        said.append(
+    if omitted := max((each.omitted for each in result.forecasts), default=0):
+        messages.append(
             f"For each forecast those {MEASURED} assumptions are measured that matter most in a first look at all; the "
             f"other {count_text(omitted)} have less influence."
         )
-    if found.omitted_forecasts:
-        said.append(first_forecasts("Sensitivity is shown of", len(found.forecasts), found.omitted_forecasts))
-    if found.medians:
-        said.append(f"Held at their medians, because their cells are blank: {', '.join(found.medians)}.")
-    return said
+    if result.omitted_forecasts:
+        messages.append(first_forecasts("Sensitivity is shown of", len(result.forecasts), result.omitted_forecasts))
+    if result.medians:
+        messages.append(f"Held at their medians, because their cells are blank: {', '.join(result.medians)}.")
+    return messages
 
 
-def sensitivity_figures(found: ForecastSensitivity, pairs: int) -> Iterator[Figure]:
+def sensitivity_figures(sensitivity: ForecastSensitivity, pairs: int) -> Iterator[Figure]:
     """Yield the charts of a forecast; `pairs` of trials gave Sobol indices, 0 where there are none."""
-    if found.influences:
-        explained, _, _, contribution = map(Figure, influence_charts(found, BARS), influence_captions(found, pairs))
+    if sensitivity.influences:
+        explained, _, _, contribution = map(
+            Figure, influence_charts(sensitivity, BARS), influence_captions(sensitivity, pairs)
+        )
         yield from (explained, contribution)
-    if found.bars and found.base is not None:
-        yield Figure(tornado_chart(found, BARS), move_captions(found)[0])
+    if sensitivity.bars and sensitivity.base is not None:
+        yield Figure(tornado_chart(sensitivity, BARS), move_captions(sensitivity)[0])
 
 
-def influence_table(found: ForecastSensitivity, sobol: bool) -> Table:
+def influence_table(sensitivity: ForecastSensitivity, sobol: bool) -> Table:
     """Return all influences on a forecast, with Sobol indices where they are right."""
     heads = ["Assumption", "Units", "Variance explained", "Noise up to", "Dependence", "Noise up to"]
     heads += ["Rank correlation", "Contribution to variance", *["First order", "Total effect"] * sobol]
-    pairs = zip(found.influences[:ROWS], noise(found), strict=False)
+    pairs = zip(sensitivity.influences[:ROWS], noise(sensitivity), strict=False)
     return Table("", tuple(heads), tuple(_influence(each, weak, sobol) for each, weak in pairs))
 
 
-def _influence(found: Influence, weak: Noise, sobol: bool) -> tuple[Content, ...]:
-    indices = ((found.first_order, weak.first_order), (found.total, weak.total)) if sobol else ()
+def _influence(influence: Influence, weak: Noise, sobol: bool) -> tuple[Content, ...]:
+    indices = ((influence.first_order, weak.first_order), (influence.total, weak.total)) if sobol else ()
     return (
-        found.assumption,
-        found.units,
-        Measured(found.explained, "share", noise=weak.explained, at_least=found.explained_at_least),
-        _floor(found.explained_floor, found.explained),
-        Measured(found.dependence, "share", noise=weak.dependence),
-        _floor(found.dependence_floor, found.dependence),
-        Measured(found.rank_correlation, noise=weak.correlation, nothing=NONE),
-        Measured(found.contribution, "share", noise=weak.correlation, nothing=NONE),
+        influence.assumption,
+        influence.units,
+        Measured(influence.explained, "share", noise=weak.explained, at_least=influence.explained_at_least),
+        _floor(influence.explained_floor, influence.explained),
+        Measured(influence.dependence, "share", noise=weak.dependence),
+        _floor(influence.dependence_floor, influence.dependence),
+        Measured(influence.rank_correlation, noise=weak.correlation, nothing=NONE),
+        Measured(influence.contribution, "share", noise=weak.correlation, nothing=NONE),
         *(Measured(index, "share", noise=is_noise) for index, is_noise in indices),
     )
 
@@ -148,40 +150,40 @@ def _floor(floor: float, of: Estimate) -> Shown:
     return Shown(floor, cells.share_format(of), "error")
 
 
-def influence_rows(found: ForecastSensitivity, most: int) -> Iterator[tuple[Content, ...]]:
+def influence_rows(sensitivity: ForecastSensitivity, most: int) -> Iterator[tuple[Content, ...]]:
     """Yield the largest influences on a forecast in brief, or that nothing moves it."""
-    if not found.influences:
-        yield found.forecast, "No assumption moves it, or there are too few trials to tell.", NONE, NONE
-    for index, (each, weak) in enumerate(zip(found.influences[:most], noise(found), strict=False)):
+    if not sensitivity.influences:
+        yield sensitivity.forecast, "No assumption moves it, or there are too few trials to tell.", NONE, NONE
+    for index, (each, weak) in enumerate(zip(sensitivity.influences[:most], noise(sensitivity), strict=False)):
         yield (
-            "" if index else found.forecast,
+            "" if index else sensitivity.forecast,
             each.assumption,
             Measured(each.explained, "share", noise=weak.explained, written=explained_text(each)),
             Measured(each.rank_correlation, noise=weak.correlation, nothing=NONE),
         )
 
 
-def explained_text(found: Influence) -> str:
+def explained_text(influence: Influence) -> str:
     """Return the share of variance explained as text, `at least 81.4 ± 1.2 %` where it is a lower bound; to hundredths
     of a percent, which no decision needs, where it is known better.
     """
-    share, error = found.explained.value, found.explained.error
-    text = share_text(found.explained)
+    share, error = influence.explained.value, influence.explained.error
+    text = share_text(influence.explained)
     if error is not None and math.isfinite(share) and error < _KNOWN_WELL:
         text = f"{fixed_text(100.0 * share, 2)} %"
-    return f"{'at least ' if found.explained_at_least else ''}{text}"
+    return f"{'at least ' if influence.explained_at_least else ''}{text}"
 
 
 _KNOWN_WELL: Final = 5e-5
 """The error of a share that two decimals of a percentage do not show."""
 
 
-def move_table(found: ForecastSensitivity) -> Table:
+def move_table(sensitivity: ForecastSensitivity) -> Table:
     """Return how far a forecast moves as each assumption is moved alone."""
     heads = ["Assumption, moved alone", "Units", "Base value", "10th percentile", "90th percentile"]
     heads += ["at 10 %", "at 25 %", "at 50 %", "at 75 %", "at 90 %", "Only rises or falls", "Cases rejected by filters"]
-    base, changed = found.base or 0.0, change_format(found)
-    return Table("", tuple(heads), tuple(_move(bar, base, changed) for bar in found.bars[:ROWS]))
+    base, changed = sensitivity.base or 0.0, change_format(sensitivity)
+    return Table("", tuple(heads), tuple(_move(bar, base, changed) for bar in sensitivity.bars[:ROWS]))
 
 
 def _move(bar: Bar, base: float, changed: str) -> tuple[Content, ...]:
@@ -198,23 +200,23 @@ def _move(bar: Bar, base: float, changed: str) -> tuple[Content, ...]:
     )
 
 
-def base_text(found: ForecastSensitivity) -> str:
+def base_text(sensitivity: ForecastSensitivity) -> str:
     """Say what the base case gives, behind the words "its base case"; nothing where that is not known."""
-    return f" of {found.base_text}" if found.base_text else ""
+    return f" of {sensitivity.base_text}" if sensitivity.base_text else ""
 
 
-def change_format(found: ForecastSensitivity) -> str:
+def change_format(sensitivity: ForecastSensitivity) -> str:
     """Return the format of changes of a forecast; of dates they are days."""
-    widest = found.bars[0].span if found.bars else 0.0
-    return cells.spread_format(widest, found.change_form)
+    widest = sensitivity.bars[0].span if sensitivity.bars else 0.0
+    return cells.spread_format(widest, sensitivity.change_form)
 
 
-def is_bent(found: ForecastSensitivity) -> bool:
+def is_bent(sensitivity: ForecastSensitivity) -> bool:
     """Whether it does not only rise or fall with an assumption that is drawn."""
-    return any(bar.monotonic is False for bar in found.bars[:BARS])
+    return any(bar.monotonic is False for bar in sensitivity.bars[:BARS])
 
 
-def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
+def influence_captions(sensitivity: ForecastSensitivity, pairs: int) -> list[str]:
     """Return a caption for each chart of influences: what it is and what it is not."""
     dependence = (
         "Dependence (index of Cramér and von Mises): 0 only if no part of the forecast's distribution depends on the "
@@ -228,8 +230,8 @@ def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
         "effects add up to 100 % or more. (Sobol's total index; first order is the part that it explains alone.)"
     )
     rank = (
-        f"Rank correlation on {counted_text(found.trials, 'accepted trial')}: whether the forecast rises or falls "
-        "with the assumption. It does not show effects that rise and fall, and it is not a share of the variance."
+        f"Rank correlation on {counted_text(sensitivity.trials, 'accepted trial')}: whether the forecast rises or "
+        "falls with the assumption. It does not show effects that rise and fall, and it is not a share of the variance."
     )
     contribution = (
         "Contribution to variance as Crystal Ball shows it: squared rank correlations scaled to 100 %. Approximate, "
@@ -239,12 +241,12 @@ def influence_captions(found: ForecastSensitivity, pairs: int) -> list[str]:
     return [EXPLAINED_CHART, total if pairs else dependence, rank, contribution]
 
 
-def move_captions(found: ForecastSensitivity) -> list[str]:
+def move_captions(sensitivity: ForecastSensitivity) -> list[str]:
     """Return a caption for tornado and spider: what each is and what it is not."""
-    tornado = TORNADO_CHART.replace("its base case", f"its base case{base_text(found)}")
-    if is_bent(found):
+    tornado = TORNADO_CHART.replace("its base case", f"its base case{base_text(sensitivity)}")
+    if is_bent(sensitivity):
         tornado += f" {BENT}"
-    lines = min(MOST_LINES, len(found.bars))
+    lines = min(MOST_LINES, len(sensitivity.bars))
     spider = (
         f"Spider: the same over five points of each assumption's own distribution before filtering, for the {lines} "
         "that move it most; a bent line is an effect that a correlation describes badly. A steep line does not mean "
@@ -261,8 +263,8 @@ def section(material: Material) -> Iterator[Block]:
     # Those that a person names are shown, wherever they stand.
     named = None if len(material.forecasts) == len(simulation.model.forecasts) else material.forecasts
     within = named is None or set(named) <= set(simulation.detailed)
-    found, fits = sensitivities(simulation, None if within else named), vocabulary_of(simulation.model.workbook).fits
-    shown = [each for each in found.forecasts if each.forecast in material.once]
+    result, fits = sensitivities(simulation, None if within else named), vocabulary_of(simulation.model.workbook).fits
+    shown = [each for each in result.forecasts if each.forecast in material.once]
     if not shown:
         return
     yield Paragraph(
@@ -271,8 +273,8 @@ def section(material: Material) -> Iterator[Block]:
         "more than chance alone would show. The rank correlation says whether the forecast rises (above 0) or falls "
         f"with the assumption. No sensitivity says whether the model {fits}."
     )
-    if named is None and found.omitted_forecasts:
-        yield Paragraph(first_forecasts("Sensitivity is shown of", len(shown), found.omitted_forecasts))
+    if named is None and result.omitted_forecasts:
+        yield Paragraph(first_forecasts("Sensitivity is shown of", len(shown), result.omitted_forecasts))
     lines: list[tuple[Content, ...]] = []
     most = _MOST_BARS if len(shown) <= _FEW else _MOST_OF_MANY
     for each in shown:

@@ -48,10 +48,10 @@ def statistics_sentence(simulation: RunResult) -> str:
 def statistics_tables(results: Sequence[ForecastResult]) -> Iterator[Table]:
     """Yield the statistics of forecasts side by side, then their percentiles; none of answers that have none."""
     for head, made in (("Statistic", _statistics), ("Percentile", _percentiles)):
-        found = [made(result) for result in results]
-        labels = dict.fromkeys(label for rows in found for label in rows)
+        answer = [made(result) for result in results]
+        labels = dict.fromkeys(label for rows in answer for label in rows)
         if labels:
-            lines = ((label, *(rows.get(label, BLANK) for rows in found)) for label in labels)
+            lines = ((label, *(rows.get(label, BLANK) for rows in answer)) for label in labels)
             yield Table(
                 "",
                 (head, *(with_units(each.definition.name, each.definition.units) for each in results)),
@@ -62,8 +62,8 @@ def statistics_tables(results: Sequence[ForecastResult]) -> Iterator[Table]:
 
 def _statistics(result: ForecastResult) -> Mapping[str, Content]:
     """Return label -> number."""
-    found = result.statistics
-    rows: dict[str, Content] = {"Trials": cells.count(found.trials)}
+    description = result.statistics
+    rows: dict[str, Content] = {"Trials": cells.count(description.trials)}
     if result.sample.w is not None:
         rows["Effective trials"] = cells.count(round(result.sample.effective))
     if result.yes is not None:
@@ -71,26 +71,26 @@ def _statistics(result: ForecastResult) -> Mapping[str, Content]:
     if result.kind is Kind.CATEGORY:
         return rows | {f"“{text}”": counted_share(share) for text, share in [*result.categories.items()][:_MOST_TEXTS]}
     statistics = {
-        "Mean": found.mean,
-        "Median": found.median,
-        "Mode": found.mode,
-        "Standard deviation": found.standard_deviation,
-        "Variance": found.variance,
-        "Skewness": found.skewness,
-        "Kurtosis (normal 3)": found.kurtosis,
-        "Coefficient of variation": found.coefficient_of_variation,
-        "Minimum": found.minimum,
-        "Maximum": found.maximum,
-        "Range width": found.range_width,
-        "Mean standard error": found.mean_standard_error,
+        "Mean": description.mean,
+        "Median": description.median,
+        "Mode": description.mode,
+        "Standard deviation": description.standard_deviation,
+        "Variance": description.variance,
+        "Skewness": description.skewness,
+        "Kurtosis (normal 3)": description.kurtosis,
+        "Coefficient of variation": description.coefficient_of_variation,
+        "Minimum": description.minimum,
+        "Maximum": description.maximum,
+        "Range width": description.range_width,
+        "Mean standard error": description.mean_standard_error,
     }
     return rows | {label: _statistic(result, label, estimate) for label, estimate in statistics.items()}
 
 
-def _statistic(result: ForecastResult, label: str, found: Estimate) -> Measured:
+def _statistic(result: ForecastResult, label: str, estimate: Estimate) -> Measured:
     form = PLAIN if label in _PURE else result.form
     like = result.statistics.mean if form is result.form else result.statistics.variance
-    return Measured(found, "spread" if label in _SPANS else "number", form, interval=True, like=like)
+    return Measured(estimate, "spread" if label in _SPANS else "number", form, interval=True, like=like)
 
 
 def _percentiles(result: ForecastResult) -> Mapping[str, Content]:
@@ -99,21 +99,22 @@ def _percentiles(result: ForecastResult) -> Mapping[str, Content]:
     """
     if result.kind in NOT_ROUNDED:
         return {}
-    found, definition = result.statistics, result.definition
+    description, definition = result.statistics, result.definition
     rows: dict[str, Content] = {
-        f"{number_text(percentile)} %": _percentile(result, each) for percentile, each in found.percentiles.items()
+        f"{number_text(percentile)} %": _percentile(result, each)
+        for percentile, each in description.percentiles.items()
     }
-    low, high = found.central
+    low, high = description.central
     rows["Central range, share"] = Shown(definition.central, _percent_format(definition.central))
     rows |= {"Central range from": _percentile(result, low), "Central range to": _percentile(result, high)}
-    if found.probability_above is not None:
+    if description.probability_above is not None:
         rows["Threshold"] = cells.exact(definition.threshold, result.form)
-        rows["Above threshold"] = counted_share(found.probability_above)
+        rows["Above threshold"] = counted_share(description.probability_above)
     return rows
 
 
-def _percentile(result: ForecastResult, found: Estimate) -> Measured:
-    return Measured(found, form=result.form, interval=True, like=result.statistics.mean)
+def _percentile(result: ForecastResult, estimate: Estimate) -> Measured:
+    return Measured(estimate, form=result.form, interval=True, like=result.statistics.mean)
 
 
 def _percent_format(share: float) -> str:

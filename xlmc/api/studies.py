@@ -68,7 +68,7 @@ def compare(
     second: Model,
     tolerance: Iterable[str] | str = (),
     *,
-    message: Callable[[str], None] | None = None,
+    told: Callable[[str], None] | None = None,
     **options: Unpack[CompareArguments],
 ) -> Comparison:
     """Run two books of one scene over the same trials, and judge whether their answers agree.
@@ -81,7 +81,7 @@ def compare(
         second: the other; either may be the simpler.
         tolerance: `0.5`, `0.5 mph`, `10 %` (of the forecast's SD in the first book), `Name=0.5 mph`; a tenth of the SD
             where none is stated. It holds for mean, SD and both ends of the central range.
-        message: the former name of `tell`.
+        told: the former name of `tell`.
         options: `pairs`, `feeds`, `trials`, `seed`, `engine`, `jobs`, `chance`, `causes` and `tell`, which
             `xlmc.analysis.studies.comparison.compare` describes.
 
@@ -91,7 +91,7 @@ def compare(
     """
     from xlmc.analysis.studies.comparison import compare
 
-    options.setdefault("tell", message)
+    options.setdefault("tell", told)
     return compare(first._compiled, second._compiled, tolerance, **options)
 
 
@@ -99,7 +99,7 @@ def screen(
     model: Model,
     tolerance: Iterable[str] | str = (),
     *,
-    message: Callable[[str], None] | None = None,
+    told: Callable[[str], None] | None = None,
     **options: Unpack[ScreenArguments],
 ) -> Screening:
     """Find which assumptions may be frozen, and which filters left out, without moving an answer beyond the tolerance.
@@ -110,7 +110,7 @@ def screen(
         model: to screen.
         tolerance: `0.5`, `0.5 mph`, `10 %` (of the forecast's SD), `Name=0.5 mph`; a tenth of the SD where none is
             stated. It holds for mean, SD and both ends of the central range.
-        message: the former name of `tell`.
+        told: the former name of `tell`.
         options: `chance`, `acceptance_tolerance`, `sets`, `judged_by`, `ends`, `trials`, `seed`, `engine`, `jobs` and
             `tell`, which `xlmc.analysis.studies.screening.screen` describes.
 
@@ -120,7 +120,7 @@ def screen(
     """
     from xlmc.analysis.studies.screening import screen
 
-    options.setdefault("tell", message)
+    options.setdefault("tell", told)
     return screen(model._compiled, tolerance, **options)
 
 

@@ -1191,7 +1191,7 @@ def test_long_work_is_given_up_for_a_move_and_taken_up_again(case, stage, monkey
         if len(shares) == 2:
             session.receive(change(FRICTION, "high", 0.9, held=True))
 
-    (over,) = done(session, job, told=messages)
+    (over,) = done(session, job, messages=messages)
     assert over["stage"] == "over"
     assert len(shares) == 2
     assert 0.0 <= shares[0] < shares[1] <= 1.0

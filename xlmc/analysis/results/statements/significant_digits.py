@@ -279,4 +279,5 @@ def _text(value: Decimal, form: Form) -> str:
     if form.kind is not Kind.DATE and is_far(form.factor * float(value)):
         return styled_text(float(value), f".{len(value.as_tuple().digits) - 1}e")
     exponent = value.as_tuple().exponent
-    return form.tick(float(value), -exponent if isinstance(exponent, int) else 0)
+    decimals = -exponent if isinstance(exponent, int) else 0
+    return form.number(float(value), max(decimals - round(math.log10(form.factor)), 0))

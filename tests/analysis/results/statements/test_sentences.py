@@ -218,6 +218,8 @@ def test_without_units_numbers_or_variation():
     assert sentences([], threshold=1.0) == ["speed: no trial is accepted"]
     assert sentences([math.nan, math.nan], kind=Kind.NUMBER) == ["speed: no accepted trial has a number"]
     assert sentences([2.0] * 40, units="mph") == ["speed: 2 mph in all 40 trials"]
+    assert sentences([42.35203596] * 40, units="mph") == ["speed: 42.352 mph in all 40 trials"]
+    assert sentences([1234567.25] * 40, units="mph") == ["speed: 1,234,567.25 mph in all 40 trials"]
     assert sentences([2.0], units="mph") == ["speed: 2 mph in the only trial"]
     assert sentences([0.0] * 900 + [2.0] * 100) == ["speed: more probable than not (90.0 % ± 0.9 %) equal to 0"]
     (text,) = sentences([1.0] * 20 + [2.0] * 20)

@@ -22,7 +22,7 @@ EVEN: Final = 0.5
 """Even odds: above it something is more probable than not."""
 
 _DIGITS, _SINGLE_DIGITS = 6, 12
-"""Significant digits of a number without an error; and of one that is the same in all trials."""
+"""Significant digits of a number without an error; and of one that is the same in all trials and has few decimals."""
 
 _LAST_BITS = 1e-12
 """By how much a multiple of a resolution may be off, relative to it."""
@@ -107,7 +107,10 @@ class _Rounding:
 
     def single(self, value: float) -> RoundedRange:
         """Return the range of one value, which its text alone rounds."""
-        text = _text(_round(value, self.unit, ROUND_HALF_EVEN, _SINGLE_DIGITS), self.form)
+        rounded = _round(value, self.unit, ROUND_HALF_EVEN, _SINGLE_DIGITS)
+        if _decimals(rounded) > _DIGITS:
+            rounded = _round(value, self.unit, ROUND_HALF_EVEN).normalize()
+        text = _text(rounded, self.form)
         return RoundedRange(value, value, text, text, probability_between(self.sample, value, value))
 
     def range(self, steps: Steps) -> RoundedRange:
@@ -278,6 +281,9 @@ def _round(value: float, unit: Decimal | None, rounding: str, significant: int =
 def _text(value: Decimal, form: Form) -> str:
     if form.kind is not Kind.DATE and is_far(form.factor * float(value)):
         return styled_text(float(value), f".{len(value.as_tuple().digits) - 1}e")
+    return form.number(float(value), max(_decimals(value) - round(math.log10(form.factor)), 0))
+
+
+def _decimals(value: Decimal) -> int:
     exponent = value.as_tuple().exponent
-    decimals = -exponent if isinstance(exponent, int) else 0
-    return form.number(float(value), max(decimals - round(math.log10(form.factor)), 0))
+    return -exponent if isinstance(exponent, int) else 0

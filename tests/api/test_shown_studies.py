@@ -84,7 +84,7 @@ def test_other_endings_are_refused(model, tmp_path):
 
 def test_sensitivities_a_check_and_a_fit_print_themselves_shortly(model):
     assert "Demand 100" in repr(xlmc.sensitivities(model.simulate(2000)))
-    assert repr(xlmc.verify(model.path)).startswith("1 formula cells: ")
+    assert repr(xlmc.verify(model.path)).startswith("1 formula cell: ")
     assert repr(xlmc.fit([1.2, 1.9, 2.4, 3.1, 3.3, 4.8])).startswith("6 values as continuous, the best by AIC first:")
 
 

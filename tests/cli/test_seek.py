@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import datetime as dt
 import json
+import re
 
 import openpyxl
 import pytest
@@ -30,6 +32,16 @@ def test_no_value_is_exit_code_1(xlmc, book):
     outcome = xlmc("seek", book, "--cell", "B2", "--to", "-5", "--by", "B1", "--low", "0", "--high", "10")
     assert outcome.code == 1
     assert "No value of Model!B1 from 0 to 10 makes Model!B2 equal to -5." in outcome.out
+
+
+def test_ends_of_a_range_within_one_day_are_told_apart(xlmc, tmp_path):
+    book = workbook_of({"Model": [["start", dt.date(2026, 9, 1)], ["end", "=WORKDAY(B1,30)"]]}, {})
+    book["Model"]["B1"].number_format = book["Model"]["B2"].number_format = "yyyy-mm-dd"
+    book.save(tmp_path / "days.xlsx")
+    outcome = xlmc("seek", tmp_path / "days.xlsx", "--cell", "B2", "--to", "46300", "--by", "B1")
+    words = " ".join(outcome.out.split())
+    (ends,) = re.findall(r"is 2026-10-05 wherever Model!B1 is from (2026-08-24) \((.*?)\) to \1 \((.*?)\),", words)
+    assert 46_258.0 <= float(ends[1].replace(",", "")) < float(ends[2].replace(",", "")) < 46_259.0
 
 
 def test_mistakes_are_one_message_and_exit_code_2(xlmc, book):

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import openpyxl
 import pytest
+from workbook_files import add_tables, workbook_of
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -57,6 +58,28 @@ def test_the_sheet_has_a_chart_of_three_lines(xlmc, book, tmp_path):
     made = openpyxl.load_workbook(sheet)
     (chart,) = made["Uncertainty"]._charts
     assert len(chart.series) == 3
+
+
+def test_ends_without_an_error_have_the_digits_of_the_mean_and_equal_ones_stand_once(xlmc, tmp_path):
+    inputs = [["Name", "Value", "Distribution", "Low", "High"], ["x", 1.5, "Uniform", 1, 2]]
+    formulas = {
+        "Wide": "=Tables!B2*3",
+        "Tiny": "=Tables!B2*1E-9",
+        "Steps": "=ROUND(Tables!B2*9,0)",
+        "Same": "=7+0*Tables!B2",
+    }
+    rows = [["Name", "Cell"], *([name, f"=Model!B{row}"] for row, name in enumerate(formulas, 1))]
+    book = workbook_of({"Model": list(formulas.items()), "Tables": []}, {})
+    add_tables(book["Tables"], {"xlmc_assumptions": inputs, "xlmc_forecasts": rows})
+    book.save(tmp_path / "book.xlsx")
+    outcome = xlmc("uncertainty", tmp_path / "book.xlsx", "--outer", "30", "--inner", "20", "--uncertain", "x")
+    words = " ".join(outcome.out.split())
+    assert re.search(r"The 95th percentile of Wide is between \d\.\d\d and \d\.\d\d with", words), words
+    assert re.search(r"The 95th percentile of Tiny is between \d\.\d{3}e-09 and \d\.\d{3}e-09 with", words), words
+    assert re.search(r"The 95th percentile of Steps is between \d+ and \d+ with", words)
+    assert "The mean of Same is 7 with 90 % confidence." in words
+    tiny = words.partition(" Tiny Number")[2].partition("Drawn in files")[0]
+    assert re.search(r"SD \(\S+ ± \S+\)e-10 0 0 ", tiny)
 
 
 def test_check_and_results_say_what_is_uncertain(xlmc, book):

@@ -65,6 +65,14 @@ def test_what_is_unsupported_is_named_with_its_cell(xlmc, tmp_path):
     assert "NOSUCHFUNCTION is not known to xlmc (Sheet!A1)" in outcome.out
 
 
+def test_cells_without_saved_values_are_told_with_the_cure(xlmc, tmp_path):
+    book = openpyxl.Workbook()
+    book.active["A1"] = "=1+1"
+    book.save(tmp_path / "book.xlsx")
+    words = " ".join(xlmc("verify", tmp_path / "book.xlsx", "--all").out.split())
+    assert "1 formula cell: 1 not cached. 1 cell cannot be compared, because no value is saved there. Save" in words
+
+
 def test_a_workbook_without_definitions_needs_all(xlmc, tmp_path):
     openpyxl.Workbook().save(tmp_path / "plain.xlsx")
     outcome = xlmc("verify", tmp_path / "plain.xlsx")

@@ -91,15 +91,20 @@ def _entry(cell: CellCheck) -> dict[str, object]:
 def _blocks(verification: Verification, saved_by: str, most: int) -> list[str | Block]:
     """Return what was found, with `most` differing cells; `saved_by` is the program that saved their values."""
     from xlmc.analysis.studies.verify import Status, groups
-    from xlmc.montecarlo.number_text import count_text
+    from xlmc.montecarlo.number_text import count_text, counted_text
     from xlmc.outputs.document.parts import Table
 
     counts = [
         f"{count_text(verification.count(status))} {status.value}" for status in Status if verification.count(status)
     ]
     blocks: list[str | Block] = [
-        f"{count_text(len(verification.cells))} formula cells: {', '.join(counts) or 'nothing to check'}."
+        f"{counted_text(len(verification.cells), 'formula cell')}: {', '.join(counts) or 'nothing to check'}."
     ]
+    if missing := verification.count(Status.NOT_CACHED):
+        blocks.append(
+            f"{counted_text(missing, 'cell')} cannot be compared, because no value is saved there. Save the workbook "
+            "in Excel or LibreOffice, then verify it again."
+        )
     differing = verification.of(Status.DIFFERING)
     if differing:
         rows = tuple(

@@ -22,7 +22,7 @@ from xlmc.excel.workbook.workbook import CellValue, Workbook
 from xlmc.montecarlo.definitions.definitions import Definitions
 from xlmc.montecarlo.definitions.in_cells.suspects import holds_call
 from xlmc.montecarlo.model.needed import targets_of
-from xlmc.montecarlo.number_text import count_text
+from xlmc.montecarlo.number_text import count_text, counted_text
 
 __all__ = ["TOLERANCE", "CellCheck", "Status", "Verification", "verify"]
 
@@ -75,7 +75,7 @@ class Verification:
         counts = ", ".join(
             f"{count_text(self.count(status))} {status.value}" for status in Status if self.count(status)
         )
-        return f"{count_text(len(self.cells))} formula cells: {counts or 'nothing to check'}"
+        return f"{counted_text(len(self.cells), 'formula cell')}: {counts or 'nothing to check'}"
 
     def count(self, status: Status) -> int:
         """How many cells have that status."""

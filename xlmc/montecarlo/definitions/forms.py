@@ -192,9 +192,10 @@ class Form:
 
     def beside(self, value: float, like: Estimate) -> str:
         """Write a number without an error in the digits of another one; in six where its error is not known, either;
-        in all of its own where that is an exact one.
+        in all of its own where that is an exact one. Beside a number with a power of ten zero has no decimals.
         """
-        return self.rough(value) if like.error is None else self.number(value, self._decimals(like))
+        is_plain = like.error is None or (value == 0.0 and is_far(self._scaled(like.value)))
+        return self.rough(value) if is_plain else self.number(value, self._decimals(like))
 
     def value(self, estimate: Estimate) -> str:
         """Return the number in the digits that its error supports, without the error."""

@@ -11,7 +11,8 @@ is about n^(−1/5): the mode converges no faster, and the bootstrap fails for s
 8 trials), and the standard deviation of the groups' modes is scaled from the group's size to n by the fifth-root law.
 With replicates, the groups are the replicates. At a peak with a kink or an edge the mode converges as n^(−1/3), and
 this error is up to about twice too large. It measures the spread only: the bias of a skewed peak, which shrinks with n
-as well, is not in it.
+as well, is not in it. Counts have whole modes: the ends of the interval are the nearest whole numbers, and where both
+are the mode itself its error is 0.
 """
 
 from __future__ import annotations
@@ -52,13 +53,23 @@ def mode(
         return Estimate(np.nan)
     value = half_sample_mode(sample)
     sizes, modes = _modes_of_groups(sample)
+    is_count = sample.whole and _are_counts(sample.x)
     release(sample.x)
     if modes.size < 2:
         return Estimate(value, n=sample.n)
     largest = float(np.abs(modes).max())
     unit = largest if largest > _SQUARABLE else 1.0
     error = float(unit * np.std(modes / unit, ddof=1) * (np.mean(sizes) / sample.n) ** CONVERGENCE)
-    return with_error(value, error, modes.size - 1.0, confidence, sample.n)
+    result = with_error(value, error, modes.size - 1.0, confidence, sample.n)
+    return _of_whole_numbers(result) if is_count else result
+
+
+def _of_whole_numbers(result: Estimate) -> Estimate:
+    """Return the mode of counts with whole ends of its interval, and without an error where these are equal."""
+    if result.interval is None:
+        return result
+    low, high = (float(round(end)) for end in result.interval)
+    return Estimate(result.value, 0.0 if low == high else result.error, (low, high), result.n)
 
 
 def half_sample_mode(sample: Sample) -> float:

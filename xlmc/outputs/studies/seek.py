@@ -33,8 +33,7 @@ def _blocks(result: Found) -> Iterator[str | Block]:
     to, by = result.form.number(result.to), result.form_by
     span = f"from {by.rough(result.low)} to {by.rough(result.high)}"
     for low, high in result.throughout:
-        between = f"from {by.rough(low)} to {by.rough(high)}"
-        yield f"{result.cell} is {to} wherever {result.by} is {between}, as finely as was looked."
+        yield f"{result.cell} is {to} wherever {result.by} is {_between(by, low, high)}, as finely as was looked."
     if not result.values.size:
         yield f"No value of {result.by} {span} makes {result.cell} equal to {to}."
         if result.base_answer is None and all(each != each for each in result.curve[1]):  # no NaN equals itself
@@ -62,6 +61,14 @@ def _blocks(result: Found) -> Iterator[str | Block]:
         )
         message = f"{result.cell} for values of {result.by}, and the value it is to have"
         yield Figure(Chart("", str(result.by), drawn, message), message)
+
+
+def _between(by: Form, low: float, high: float) -> str:
+    """Write two ends of a range, in all digits where they read alike in few, as times of one day do."""
+    ends = [by.rough(low), by.rough(high)]
+    if ends[0] == ends[1]:
+        ends = [_solved(by, low), _solved(by, high)]
+    return f"from {ends[0]} to {ends[1]}"
 
 
 def _solved(form: Form, value: float) -> str:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.uncertainty import Band, ForecastBands, TwoLoops
+    from xlmc.montecarlo.statistics import Estimate
     from xlmc.outputs.document.parts import Block, Figure, Table
     from xlmc.outputs.study_report import StudyReport
 
@@ -40,10 +41,7 @@ def _sentences(loops: TwoLoops) -> Iterator[str]:
                 draws = f"{number_text(loops.confidence)} % of the outer draws or more"
                 yield f"{_subject(each, band)} is {share} in {draws}, as far as their trials tell."
                 continue
-            yield (
-                f"{_subject(each, band)} is between {_ends(each, band)} with "
-                f"{number_text(loops.confidence)} % confidence."
-            )
+            yield f"{_subject(each, band)} is {_ends(each, band)} with {number_text(loops.confidence)} % confidence."
     if loops.texts:
         yield f"Not told, since the answers are texts: {'; '.join(loops.texts)}."
     if loops.valueless:
@@ -58,15 +56,28 @@ def _subject(each: ForecastBands, band: Band) -> str:
 
 
 def _ends(each: ForecastBands, band: Band) -> str:
-    """`41.2 and 47.9 mph`, both in the digits that the larger of their errors supports; as the table without errors."""
+    """`between 41.2 and 47.9 mph`, both in the digits that the larger of their errors supports; as the table without
+    errors. Ends that read alike, as those of a constant, stand once.
+    """
     both = (band.low, band.high)
     decimals = band.form.decimals_of_both(*both)
     if any(end.error is None for end in both):
-        ends = " and ".join(band.form.beside(end.value, band.pooled) for end in both)
+        low, high = (band.form.beside(end.value, _like(each, band)) for end in both)
     else:
-        ends = " and ".join(band.form.number(end.value, decimals) for end in both)
+        low, high = (band.form.number(end.value, decimals) for end in both)
+    ends = low if low == high else f"between {low} and {high}"
     units = f" {each.definition.units}" if each.definition.units and not band.is_share else ""
     return f"{ends}{units}"
+
+
+def _like(each: ForecastBands, band: Band) -> Estimate:
+    """Return the number whose digits those of a row take that have no error: that of all trials, or the mean where that
+    has none, either; whole numbers stay whole.
+    """
+    from xlmc.montecarlo.definitions.stating import Kind
+
+    has_own = band.pooled.error is not None or band.is_share or band.form.kind is Kind.WHOLE
+    return band.pooled if has_own else each.bands[0].pooled
 
 
 def _tables(loops: TwoLoops) -> Iterator[Block]:
@@ -86,12 +97,14 @@ def _table(loops: TwoLoops, each: ForecastBands) -> Table:
     from xlmc.analysis.studies.uncertainty import DEVIATION
     from xlmc.outputs.document.parts import Table
 
-    rows = tuple((band.number, *_texts(band, is_spread=band.number == DEVIATION)) for band in each.bands)
+    rows = tuple(
+        (band.number, *_texts(band, _like(each, band), is_spread=band.number == DEVIATION)) for band in each.bands
+    )
     heads = ("Number", "All trials", "Band from", "Band to")
     return Table(_title(each), heads, rows, (1, 2, 3))
 
 
-def _texts(band: Band, *, is_spread: bool) -> Iterator[str]:
+def _texts(band: Band, like: Estimate, *, is_spread: bool) -> Iterator[str]:
     """Yield the number of all trials and both ends; an end without an error in the digits of the other numbers."""
     from xlmc.montecarlo.definitions.stating import Kind
 
@@ -100,7 +113,7 @@ def _texts(band: Band, *, is_spread: bool) -> Iterator[str]:
         if end.error is not None or (is_spread and band.form.kind is Kind.DATE):
             yield write(end)
         else:
-            yield band.form.beside(end.value, band.pooled)
+            yield band.form.beside(end.value, like)
 
 
 def _curve(loops: TwoLoops, each: ForecastBands) -> Figure:

@@ -6,6 +6,7 @@ import numpy as np
 import openpyxl
 import pytest
 from openpyxl.worksheet.table import Table
+from workbook_files import workbook_of
 
 pytestmark = pytest.mark.usefixtures("fitted_once")
 
@@ -226,3 +227,12 @@ def test_a_row_of_values_is_one_quantity(xlmc, tmp_path):
     book.active.append(FRICTION[:20].tolist())
     book.save(tmp_path / "row.xlsx")
     assert "fitted together" not in xlmc("fit", tmp_path / "row.xlsx", "A1:T1").err
+
+
+def test_parameters_without_an_error_are_in_the_number_style(xlmc, tmp_path):
+    rows = [["Days", "Uniform"], *([46_000 + 3 * row, row % 7 / 8.0] for row in range(40))]
+    workbook_of({"Tests": rows}, {}).save(tmp_path / "days.xlsx")
+    for words in (["Tests!A2:A41", "--kind", "counts"], ["Tests!A1:B41", "--columns"]):
+        outcome = xlmc("fit", tmp_path / "days.xlsx", *words, "--number-style", "1.234,5")
+        assert "Discrete Uniform" in outcome.out, outcome.err
+        assert "Low 46.000, High 46.117" in outcome.out

@@ -385,7 +385,7 @@ _MEANING = (
 
 def _parameters(fitted: Fitted) -> str:
     from xlmc.analysis.studies.fitting import parameter_texts
-    from xlmc.montecarlo.number_text import number_text
+    from xlmc.montecarlo.number_text import MOST_DIGITS, number_text
     from xlmc.montecarlo.statistics import format_estimate
 
     parts, texts = [], parameter_texts(fitted)
@@ -394,7 +394,7 @@ def _parameters(fitted: Fitted) -> str:
         if heading in fitted.fixed:
             parts.append(f"{heading} {number_text(value)} (not estimated)")
         elif error is None or not math.isfinite(error):
-            parts.append(f"{heading} {texts[heading]}")
+            parts.append(f"{heading} {number_text(float(texts[heading]), MOST_DIGITS)}")
         else:
             parts.append(f"{heading} {format_estimate(value, error)}")
     return ", ".join(parts)

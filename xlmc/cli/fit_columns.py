@@ -265,14 +265,17 @@ def _blocks(fits: Fits) -> Iterator[str | Block]:
 
 def _parameters(each: ColumnFit, best: Fitted) -> str:
     from xlmc.analysis.studies.fitting import parameter_texts
+    from xlmc.montecarlo.number_text import MOST_DIGITS, number_text
     from xlmc.montecarlo.statistics import format_estimate
 
     parts = []
     for heading, text in parameter_texts(best).items():
         repeated = (each.repeated or {}).get(heading)
         error = best.errors[heading] if repeated is None else float(repeated.std(ddof=1))
-        value = best.parameters[heading]
-        parts.append(f"{heading} {text if not error or error != error else format_estimate(value, error)}")
+        if not error or error != error:  # no NaN equals itself
+            parts.append(f"{heading} {number_text(float(text), MOST_DIGITS)}")
+        else:
+            parts.append(f"{heading} {format_estimate(best.parameters[heading], error)}")
     return ", ".join(parts)
 
 

@@ -43,6 +43,13 @@ def test_the_terminal_says_what_is_best_and_how_sure_that_is(xlmc, book):
     assert "xlmc optimise newsvendor.xlsx --maximise 'mean of Profit' --subject-to 'P5 of Profit >= -110'" in words
 
 
+def test_no_margin_is_said_where_none_matters(xlmc, book):
+    outcome = xlmc("optimise", book, "--maximise", "P1 of Profit", "-n", "500", "--indifference", "0")
+    words = " ".join(outcome.out.split())
+    assert "candidates, no other that was tried is better: " in words
+    assert "a difference that does not matter" not in words
+
+
 def test_every_kind_of_file_and_the_run_repeats(xlmc, book, tmp_path):
     for library in ("typst", "docx", "pyarrow"):
         pytest.importorskip(library)

@@ -95,10 +95,9 @@ def _sentences(result: Optimised) -> Iterator[str]:
     if result.tried == 1:
         yield "It is the only candidate."
     elif result.holds:
-        yield (
-            f"Of {count_text(result.tried)} candidates, {others} is better by more than {_small(result)}, a difference "
-            f"that does not matter here: {_percent(result.confidence)} confidence."
-        )
+        small = f" by more than {_small(result)}, a difference that does not matter here" if result.indifference else ""
+        sure = f"{_percent(result.confidence)} confidence"
+        yield f"Of {count_text(result.tried)} candidates, {others} is better{small}: {sure}."
     better = [each for each in result.rivals if each.meets and each.significant and each.ahead > result.indifference]
     for rival in better[: int(result.holds)]:
         yield f"Fresh trials show {_with_values(result, rival.candidate)} to be better: give the search more --runs."

@@ -208,7 +208,7 @@ def test_what_decisions_alone_decide(text, holds):
         ("mean of Order", "'Order' is a decision, and not a forecast", "Such as"),
         ("NPV", "'NPV' is a forecast, and a statistic of it is asked for", "Such as"),
         ("Colour", "the values of 'Colour' are texts", "Only decisions that are numbers"),
-        ("mean of Verdict", "the answers of 'Verdict' are texts", "probability of Verdict is Yes"),
+        ("mean of Verdict", "In 'mean of Verdict': the answers", "probability of Verdict is Yes"),
         ("probability of Verdict", "the answers of 'Verdict' are texts", "probability of Verdict is Yes"),
         ("probability of NPV is good", "the answers of 'NPV' are no texts", "Such as"),
         ("probability that NPV = 3", "the answers of 'NPV' are no texts", "Such as"),

@@ -353,7 +353,8 @@ class _Parsing:
         return match
 
     def _wrong(self, why: str, hint: str) -> SimulationError:
-        marked = f"{self._text[: self._at].rstrip()} ⟨{self._text[self._at :].strip()}⟩".strip()
+        before, after = self._text[: self._at].strip(), self._text[self._at :].strip()
+        marked = f"{before} ⟨{after}⟩".strip() if after else before
         return SimulationError(f"In {marked!r}: {why}", hint=hint)
 
 

@@ -11,8 +11,8 @@ is about n^(−1/5): the mode converges no faster, and the bootstrap fails for s
 8 trials), and the standard deviation of the groups' modes is scaled from the group's size to n by the fifth-root law.
 With replicates, the groups are the replicates. At a peak with a kink or an edge the mode converges as n^(−1/3), and
 this error is up to about twice too large. It measures the spread only: the bias of a skewed peak, which shrinks with n
-as well, is not in it. Counts have whole modes: where the whole number nearest to either end of the interval is the mode
-itself, it has no error.
+as well, is not in it. Counts have whole modes: the ends of the interval are the nearest whole numbers, and where both
+are the mode itself its error is 0.
 """
 
 from __future__ import annotations
@@ -65,10 +65,11 @@ def mode(
 
 
 def _of_whole_numbers(result: Estimate) -> Estimate:
-    """Return the mode of counts, without an error where no other whole number is as near to an end of its interval."""
-    if result.interval is None or any(round(end) != result.value for end in result.interval):
+    """Return the mode of counts with whole ends of its interval, and without an error where these are equal."""
+    if result.interval is None:
         return result
-    return Estimate(result.value, 0.0, (result.value, result.value), result.n)
+    low, high = (float(round(end)) for end in result.interval)
+    return Estimate(result.value, 0.0 if low == high else result.error, (low, high), result.n)
 
 
 def half_sample_mode(sample: Sample) -> float:

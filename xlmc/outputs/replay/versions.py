@@ -201,7 +201,9 @@ RULES: Final = (
     Rule("0.12.0", "without filters the share of accepted trials is exact", _ANY),
     Rule("0.12.0", "yes/no answers, and differences of them, have the interval of their share", _ANY),
     Rule("0.12.0", "parameters without scatter, such as a standard deviation of 0, draw their one value", _ANY),
-    Rule("0.12.0", "the mode of whole numbers has no error where its interval reaches no other one", _ANY),
+    Rule(
+        "0.12.0", "the mode of whole numbers has whole ends of its interval, and no error where these are equal", _ANY
+    ),
     Rule("0.12.0", "SUBTOTAL leaves out every hidden row of a sheet with an active filter", _calls("SUBTOTAL")),
     Rule(
         "0.12.0",

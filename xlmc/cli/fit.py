@@ -137,8 +137,8 @@ def fit(
     if output.as_json:
         say_json(report.json())
     else:
-        messages = blocks_of(_cautions(result))  # as warnings, below
-        show([each for each in report.blocks[:-1] if each not in messages])
+        cautions = blocks_of(_cautions(result))  # as warnings, below
+        show([each for each in report.blocks[:-1] if each not in cautions])
         say(f"\n{chosen.name} as a row of xlmc_assumptions, to paste under these headings:\n")
         say("\t".join(row))
         say("\t".join(row.values()))

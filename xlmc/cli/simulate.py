@@ -142,7 +142,7 @@ def _of_scenarios(run: RunResult, answers: Sequence[ScenarioAnswers]) -> list[st
         f"scenario {name!r} is not possible: {why.rstrip('.')}" for name, why in impossible_scenarios(run).items()
     ]
     unusable = ((each.name, message) for each in answers[1:] for message in each.warnings if message not in own)
-    return [*impossible, *(f"scenario {name!r}: {messages}" for name, messages in unusable)]
+    return [*impossible, *(f"scenario {name!r}: {why}" for name, why in unusable)]
 
 
 def _hints(model: CompiledModel, trials: int | None, engine: str | None) -> list[Notice]:
@@ -213,11 +213,11 @@ def _show_evidence(run: RunResult) -> None:
     if agreement is None:
         return
     sentences = [] if agreement.sentence in agreement.remarks else [f"{capitalised(agreement.sentence)}."]
-    message = Paragraph(" ".join([*sentences, trials_sentence(agreement)]))  # remarks come with the other notices
+    paragraph = Paragraph(" ".join([*sentences, trials_sentence(agreement)]))  # remarks come with the other notices
     show(
         [
             item_table(agreement),
-            message,
+            paragraph,
             *means_tables(run, agreement, [*agreement.evidence_trials.forecasts][:_MOST_MOVED]),
         ]
     )

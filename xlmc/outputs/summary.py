@@ -409,11 +409,11 @@ def shares_of(answer: SummaryRow | ForecastResult) -> Mapping[str, Estimate]:
 
 def frequent_texts(shares: Mapping[str, Estimate]) -> tuple[dict[str, Estimate], str, float]:
     """Return the texts that a table tells, what it calls all the others, and their share; ("", 0) without others."""
-    messages = dict([*shares.items()][:_MOST_TEXTS])
-    others = len(shares) - len(messages)
+    frequent = dict([*shares.items()][:_MOST_TEXTS])
+    others = len(shares) - len(frequent)
     if others == 0:
-        return messages, "", 0.0
-    return messages, f"{count_text(others)} rarer texts", 1.0 - math.fsum(share.value for share in messages.values())
+        return frequent, "", 0.0
+    return frequent, f"{count_text(others)} rarer texts", 1.0 - math.fsum(share.value for share in frequent.values())
 
 
 _MOST_TEXTS: Final = 20

@@ -189,8 +189,8 @@ def _asked(areas: Iterable[Area], fault: _Fault, what: str, passed: list[tuple[C
         cells = [(cell, fault(cell)) for cell in area.cells()]
         good = [cell for cell, why in cells if why is None]
         if not good:
-            where, messages = next((cell, why) for cell, why in cells if why is not None)
-            raise DefinitionError(f"the cell {messages[0]}, so that it is no {what}", where=where, hint=messages[1])
+            where, reason = next((cell, why) for cell, why in cells if why is not None)
+            raise DefinitionError(f"the cell {reason[0]}, so that it is no {what}", where=where, hint=reason[1])
         passed += [(cell, why[0]) for cell, why in cells if why is not None and why[0] != _BLANK]
         yield from good
 

@@ -34,11 +34,11 @@ def calculate_labels(workbook: Workbook) -> Workbook:
     A notice names what differs from the saved value.
     """
     tables = [table for table in workbook.tables if table.name.casefold().startswith(_TABLES)]
-    messages = [cell for table in tables for cell in _said(table)]
-    missing = [cell for cell in messages if workbook.content(cell).is_uncalculated]
+    stated = [cell for table in tables for cell in _stated(table)]
+    missing = [cell for cell in stated if workbook.content(cell).is_uncalculated]
     values = _calculated(workbook, missing) if missing else {}
     result = {cell: value for cell, value in values.items() if isinstance(value, str | bool)}
-    stale = _stale_values(workbook, messages) if workbook.may_be_stale else {}
+    stale = _stale_values(workbook, stated) if workbook.may_be_stale else {}
     if not (missing or stale):
         return workbook
     written: dict[str, dict[tuple[int, int], CellContent]] = {}
@@ -49,9 +49,9 @@ def calculate_labels(workbook: Workbook) -> Workbook:
     return replace(workbook, sheets=with_cells(workbook.sheets, written), notices=(*workbook.notices, *notices))
 
 
-def _stale_values(workbook: Workbook, messages: Iterable[Cell]) -> dict[Cell, CellValue]:
+def _stale_values(workbook: Workbook, stated: Iterable[Cell]) -> dict[Cell, CellValue]:
     """Say what formulas of the tables give that is not what the file says."""
-    contents = {cell: workbook.content(cell) for cell in messages}
+    contents = {cell: workbook.content(cell) for cell in stated}
     cells = [cell for cell, each in contents.items() if each.formula is not None and each.value is not None]
     result = _calculated(workbook, cells) if cells else {}
     return {cell: value for cell, value in result.items() if _differs(contents[cell].value, value)}
@@ -87,7 +87,7 @@ def _calculated(workbook: Workbook, cells: Collection[Cell]) -> dict[Cell, CellV
     return {cell: value for cell, value in known.items() if not isinstance(value, ErrorCode)}
 
 
-def _said(table: Table) -> Iterator[Cell]:
+def _stated(table: Table) -> Iterator[Cell]:
     """Return the cells of a table that hold what is said: not those that say which cell is meant, or are meant.
 
     A forecast that stands in the table itself may need every formula of the workbook.

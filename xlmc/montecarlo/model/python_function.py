@@ -223,18 +223,14 @@ def _rows(
     """
     rows: Mapping[str, Any] = given if isinstance(given, Mapping) else {name: {} for name in given}
     result: dict[str, dict[str, Any]] = {}
-    for name, message in rows.items():
-        if isinstance(message, str) and single:
-            message = {single: message}
-        if not isinstance(message, Mapping) or not message.keys() <= columns.keys():
-            extra = (
-                f" {sorted(map(str, message.keys() - columns.keys()))}"
-                if isinstance(message, Mapping)
-                else f" {message!r}"
-            )
+    for name, row in rows.items():
+        if isinstance(row, str) and single:
+            row = {single: row}
+        if not isinstance(row, Mapping) or not row.keys() <= columns.keys():
+            extra = f" {sorted(map(str, row.keys() - columns.keys()))}" if isinstance(row, Mapping) else f" {row!r}"
             hint = f"Give a dict with some of {', '.join(columns)}"
             raise DefinitionError(f"The {what} {name!r} cannot have{extra}", hint=hint)
-        result[name] = dict(message)
+        result[name] = dict(row)
     return result
 
 
@@ -310,12 +306,12 @@ def _written(
         for name, each in assumptions.items()
     ]
     answers = [
-        {"Name": name, "Value": base[name], **_headed(message, _FORECAST), COMPUTED_BY: by}
-        for name, message in forecasts.items()
+        {"Name": name, "Value": base[name], **_headed(row, _FORECAST), COMPUTED_BY: by}
+        for name, row in forecasts.items()
     ]
     tests = [
-        {"Name": name, "Value": base[name], **_headed(messages, _FILTER), COMPUTED_BY: by, "Use": None}
-        for name, messages in filters.items()
+        {"Name": name, "Value": base[name], **_headed(row, _FILTER), COMPUTED_BY: by, "Use": None}
+        for name, row in filters.items()
     ]
     pairs = [{"First": a, "Second": b, "Correlation": value} for (a, b), value in correlations.items()]
     stream = io.BytesIO()
@@ -353,8 +349,8 @@ def _written(
     return stream.getvalue(), tuple(places[0]), named
 
 
-def _headed(message: Mapping[str, Any], headings: Mapping[str, str]) -> dict[str, Any]:
-    return {heading: message.get(key) for key, heading in headings.items()}
+def _headed(row: Mapping[str, Any], headings: Mapping[str, str]) -> dict[str, Any]:
+    return {heading: row.get(key) for key, heading in headings.items()}
 
 
 def _write(sheet: Any, row: int, column: int, value: object) -> None:

@@ -63,8 +63,8 @@ def _of_sheet(workbook: Workbook, sheet: Sheet, needed: set[int]) -> Iterator[Eq
     spots = [(row, at) for row, columns in below.items() for at in columns.values() if (row, at) in cells]
     missing = [Cell(sheet.name, *spot) for spot in spots if cells[spot].is_uncalculated]
     calculated = {cell[1:]: text for cell, text in calculated_texts(workbook, missing).items()} if missing else {}
-    messages = {spot: calculated.get(spot) or as_text(cells[spot].value) for spot in spots}
+    shown = {spot: calculated.get(spot) or as_text(cells[spot].value) for spot in spots}
     for row, columns in below.items():
-        texts = {head: messages.get((row, at), "") for head, at in columns.items()}
+        texts = {head: shown.get((row, at), "") for head, at in columns.items()}
         if texts["equation"]:
             yield Equation(*(texts.get(head, "") for head in _HEADS))

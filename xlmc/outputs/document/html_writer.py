@@ -46,8 +46,8 @@ def _html(block: Block) -> Html:
         case Heading(text, level):
             return element(f"h{level + 1}", text)
         case Paragraph(text, look, phrases):
-            messages = [element("bdi", each.text) if each.is_name else each.text for each in phrases] or [text]
-            return element("p", *messages, class_=_LOOKS.get(look, look), role="alert" if look == "warning" else None)
+            parts = [element("bdi", each.text) if each.is_name else each.text for each in phrases] or [text]
+            return element("p", *parts, class_=_LOOKS.get(look, look), role="alert" if look == "warning" else None)
         case Bullets(_, look, leads):
             items = (element("li", *_led(lead, rest)) for lead, rest in block.led)
             return element("ul", *items, class_="statements" if leads else _LOOKS.get(look, look))
@@ -93,8 +93,8 @@ def _table(table: Table) -> Html:
         element("thead", element("tr", *heads)) if heads else EMPTY,
         element("tbody", *body),
     )
-    message = table.caption.removesuffix(".")
-    title = element("h2", table.title) if table.title else element("h3", message) if message else EMPTY
+    caption = table.caption.removesuffix(".")
+    title = element("h2", table.title) if table.title else element("h3", caption) if caption else EMPTY
     return title + element("div", inner, class_="wide-table")
 
 

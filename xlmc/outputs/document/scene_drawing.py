@@ -73,7 +73,7 @@ def scenes(workbook: Workbook) -> Iterator[tuple[list[SceneLine], list[str]]]:
 
 def _line(series: Element) -> SceneLine | None:
     """Return a series of points on the sheet; None if it is on another sheet, is too long, or is not shown."""
-    where = [message.text or "" for message in series.iterfind("./*/{*}numRef/{*}f")]
+    where = [formula.text or "" for formula in series.iterfind("./*/{*}numRef/{*}f")]
     if len(where) != 2 or not all(map(_SHEET.match, where)):
         return None
     x, y = (_numbers(series.find(f"{{*}}{axis}")) for axis in ("xVal", "yVal"))
@@ -103,18 +103,16 @@ def _line(series: Element) -> SceneLine | None:
 
 def _words(element: Element) -> str:
     """Return the text of a title or of a name; of a reference, the text that the program has stored."""
-    return " ".join(
-        message.text.strip() for tag in ("t", "v") for message in element.iterfind(f".//{{*}}{tag}") if message.text
-    )
+    return " ".join(part.text.strip() for tag in ("t", "v") for part in element.iterfind(f".//{{*}}{tag}") if part.text)
 
 
 def _numbers(axis: Element | None) -> dict[int, float]:
     """Return the stored numbers by their index; texts and blanks are left out."""
     result = {}
     for point in () if axis is None else axis.iterfind(".//{*}numCache/{*}pt"):
-        message = point.find("{*}v")
+        written = point.find("{*}v")
         try:
-            index, value = int(point.get("idx", "")), float((message.text if message is not None else None) or "")
+            index, value = int(point.get("idx", "")), float((written.text if written is not None else None) or "")
         except ValueError:
             continue
         if math.isfinite(value) and abs(value) < 1e9:

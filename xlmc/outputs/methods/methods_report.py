@@ -30,17 +30,17 @@ def methods_report(study: Study, *, figures: bool) -> StudyReport:
     first = _filled([methods_tables.error_table(study)])
     rest = _filled([methods_tables.bounds_table(study), methods_tables.reference_table(study)])
     long = _filled([methods_tables.forecast_table(study), methods_tables.length_table(study)])
-    messages = blocks_of(each.replace("`", "") for each in recommendation(study))
+    recommended = blocks_of(each.replace("`", "") for each in recommendation(study))
     words = _lines(_CANNOT, "Method", methods_tables.cannot_lines(study))
     ends = _lines(_ENDS, "Bound", methods_tables.ends_lines(study))
     drawn = _figures(study) if figures else []
     return StudyReport(
         "Methods of uncertainty analysis",
         study.model.workbook.name,
-        (*messages, *drawn, *first, *words, *rest, *long, *ends),
+        (*recommended, *drawn, *first, *words, *rest, *long, *ends),
         "Methods",
         partial(study_json, study),
-        on_sheet=(*messages, *first, *rest, *words, *ends),
+        on_sheet=(*recommended, *first, *rest, *words, *ends),
         add_sheets=partial(add_sheets, study),
         drawn=partial(png, study),
     )

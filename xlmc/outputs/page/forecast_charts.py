@@ -44,12 +44,12 @@ _NOTHING = "No forecast has a number in an accepted trial: nothing to draw."
 def charts(simulation: RunResult, figures: Sequence[Figure]) -> Html:
     """Return the section with a chart for every forecast."""
     counted = counted_figures(figures)
-    message = len(simulation.detailed)
-    beyond = first_forecasts("Charts are drawn of", message, len(simulation.model.forecasts) - message)
+    charts = len(simulation.detailed)
+    beyond = first_forecasts("Charts are drawn of", charts, len(simulation.model.forecasts) - charts)
     return element(
         "section",
         element("h2", "Forecasts"),
-        *([element("p", beyond, class_="remark")] if message < len(simulation.model.forecasts) else []),
+        *([element("p", beyond, class_="remark")] if charts < len(simulation.model.forecasts) else []),
         *(_how_to_read(simulation, counted) if counted else []),
         *([] if figures else [element("p", _NOTHING, class_="alarm")]),
         element("noscript", element("p", "The charts need JavaScript; every number below is here without it.")),
@@ -84,10 +84,10 @@ def _how_to_read(simulation: RunResult, figures: Sequence[Figure]) -> Iterator[H
 def _shares(figure: Figure) -> Html:
     """Return the bars of an answer that is yes or no, or a text, and the share of each."""
     shares = shares_of(figure.answer)
-    messages, others, left = frequent_texts(shares)
+    frequent, others, left = frequent_texts(shares)
     rows = [
         element("tr", element("th", text or "(empty)", scope="row"), element("td", share_html(share), class_="number"))
-        for text, share in messages.items()
+        for text, share in frequent.items()
     ]
     if others:
         share = f"{number_text(100.0 * left, 3)} %"

@@ -206,8 +206,8 @@ def _page(simulation: RunResult, beside: RunResult | None, command: str | None) 
 def _packed_section(key: str, part: Html) -> Html:
     """Make a section that holds another one packed until its button is pressed: many elements make browsers slow."""
     button = element("button", "Show", type="button", data_packed=_packed(part.source))
-    message = element("p", button, " This page is large: this part is shown, and printed, when it is asked for.")
-    return element("section", element("h2", _LINKS[key]), message, id=key)
+    notice = element("p", button, " This page is large: this part is shown, and printed, when it is asked for.")
+    return element("section", element("h2", _LINKS[key]), notice, id=key)
 
 
 def _packed(text: str) -> str:

@@ -49,12 +49,12 @@ def write_certainty(page: Page, simulation: RunResult, trials: TrialsAt) -> None
     name = simulation.model.workbook.name
     page.height = _ROW
     page.title("Certainty", f"{name}: {counted_text(simulation.accepted, 'accepted trial')}")
-    if messages := statements(simulation):
+    if stated := statements(simulation):
         page.heading("In words")
-        for statement in messages:
+        for statement in stated:
             page.wide(f"{statement.text}.", "quote", LAST)
         page.row += 1
-        page.wide(meaning(simulation.model.workbook, messages), "remark", LAST)
+        page.wide(meaning(simulation.model.workbook, stated), "remark", LAST)
     page.heading("Certainty of ranges")
     write_blocks(page, certainty_blocks(simulation, simulation.results), last=LAST)
     _write_own_ranges(page, simulation, trials)

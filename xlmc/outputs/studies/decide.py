@@ -206,18 +206,18 @@ def _best_json(result: Decided, forecast: str) -> dict[str, object]:
     """Return the combinations with the largest and the smallest mean of a forecast, and how far the next one lies."""
     from xlmc.outputs.studies.json_numbers import estimate_json
 
-    messages: dict[str, object] = {"forecast": forecast}
+    document: dict[str, object] = {"forecast": forecast}
     for name, least in (("largest", False), ("smallest", True)):
         best = result.best(forecast, least=least)
-        messages[name] = best and {
+        document[name] = best and {
             "values": _contents(result.decisions, best.combination.values),
             "mean": estimate_json(best.mean),
             "next": best.next and _contents(result.decisions, best.next.values),
             "ahead": best.ahead and estimate_json(best.ahead),
             "is_sure": best.is_sure,
         }
-    messages["losing_trials"] = [
+    document["losing_trials"] = [
         {"values": _contents(result.decisions, each.values), "lost": each.answers.run.lost_share(forecast)}
         for each in result.losing(forecast)
     ]
-    return messages
+    return document

@@ -53,15 +53,15 @@ def answer_blocks(
         yield Paragraph(sentence, "warning")
     asked = tuple(question(simulation))
     yield Paragraph("".join(each.text for each in asked), phrases=asked)
-    messages = [each for each in statements(simulation) if each.forecast in names]
-    if messages:
-        leads = tuple(each.forecast if each.text.startswith(f"{each.forecast}: ") else "" for each in messages)
+    stated = [each for each in statements(simulation) if each.forecast in names]
+    if stated:
+        leads = tuple(each.forecast if each.text.startswith(f"{each.forecast}: ") else "" for each in stated)
         texts = (
             f"{also_named(lead, same or {})}{each.text.removeprefix(lead)}."
-            for lead, each in zip(leads, messages, strict=True)
+            for lead, each in zip(leads, stated, strict=True)
         )
         yield Bullets(tuple(texts), leads=leads)
-        yield Paragraph(meaning(simulation.model.workbook, messages), "small")
+        yield Paragraph(meaning(simulation.model.workbook, stated), "small")
     rows = [replace(row, name=also_named(row.name, same or {})) for row in rows]
     yield _answers(rows)
     yield from _thresholds(rows)

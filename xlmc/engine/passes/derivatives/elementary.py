@@ -22,8 +22,6 @@ elementwise("*", lambda y, a, b: (b, a), lambda y, a, b: (0.0, 1.0, 0.0))
 elementwise("/", lambda y, a, b: (1 / b, -y / b), lambda y, a, b: (0.0, -1 / b**2, 2 * y / b**2))
 elementwise("u-", lambda y, x: (-1.0,), lambda y, x: (0.0,))
 elementwise("%", lambda y, x: (0.01,), lambda y, x: (0.0,))
-elementwise("RADIANS", lambda y, x: (np.pi / 180,), lambda y, x: (0.0,))
-elementwise("DEGREES", lambda y, x: (180 / np.pi,), lambda y, x: (0.0,))
 
 
 @rule("u+", "shown", SNAP_TO_ZERO.name)

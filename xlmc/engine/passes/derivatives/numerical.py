@@ -17,7 +17,7 @@ import numpy as np
 from xlmc.engine.passes.derivatives.jet import Jet, align, chain
 from xlmc.engine.passes.derivatives.rules import Operand, Outcome
 from xlmc.excel.functions import Function
-from xlmc.excel.functions.values import ERROR, TEXT, Floats, Value
+from xlmc.excel.functions.values import ERROR, TEXT, Bools, Floats, Value
 
 __all__ = ["by_differences"]
 
@@ -294,7 +294,7 @@ def _extrapolate(moved: Moved, result: Value, path: _Path, scale: Floats) -> _Al
     first, first_error = _best(slopes, [noise / size for size in steps[:-1]])
     second, second_error = _best(bends[:-1], [4 * noise / size**2 for size in steps[:-1]])
     apart = np.abs(close - first) - 1e-3 * np.fmax(np.abs(first), np.abs(close))
-    agrees = apart <= 8 * noise / steps[-1]
+    agrees = (apart <= 8 * noise / steps[-1]) & ~_turns(slopes, bends, steps, 8 * noise / steps[-1])
     reach = largest / steps[-2]
     sure = agrees & (first_error <= np.maximum(_TOLERANCE * np.abs(first), 1e-9 * reach))
     fine = 1e-7 * reach / steps[-2]
@@ -306,6 +306,16 @@ def _extrapolate(moved: Moved, result: Value, path: _Path, scale: Floats) -> _Al
         np.where(bent, second_error, np.inf),
         np.broadcast_to(fine, second.shape),
     )
+
+
+def _turns(slopes: Sequence[Floats], bends: Sequence[Floats], steps: Sequence[Floats], noise: Floats) -> Bools:
+    """Whether the slopes on the two sides of a very small step, the last of them, still differ, as at a turn.
+
+    Central differences alone do not see a turn that is alike on both sides.
+    """
+    sides = [np.abs(bend) * step for bend, step in zip(bends, steps, strict=True)]
+    steepest = np.fmax.reduce([side + np.abs(slope) for side, slope in zip(sides, slopes, strict=False)])
+    return np.asarray(sides[-1] > 1e-3 * steepest + noise)
 
 
 def _best(rows: Sequence[Floats], noise: Sequence[Floats]) -> tuple[Floats, Floats]:

@@ -66,15 +66,16 @@ def _by_area(arguments: Arguments, areas: Sequence[Area]) -> ir.Expression:
     Of several errors among the numbers it is the first, as where all are known.
     """
     parts = [ir.Call("INDEX", (area, *arguments[1:3])) for area in areas]
-    if len(arguments) < 4 or isinstance(arguments[3], ir.Missing):
+    if len(arguments) < 4:
         return parts[0]
+    which = ir.Number(0.0) if isinstance(arguments[3], ir.Missing) else arguments[3]
     tree: ir.Expression = ir.ErrorLiteral(ErrorCode.REF)
     for count in range(len(parts), 0, -1):
-        below = ir.Binary("<", arguments[3], ir.Number(count + 1.0))
+        below = ir.Binary("<", which, ir.Number(count + 1.0))
         tree = ir.Call("IF", (below, parts[count - 1], tree))
-    tree = ir.Call("IF", (ir.Binary("<", arguments[3], ir.Number(1.0)), ir.ErrorLiteral(ErrorCode.VALUE), tree))
+    tree = ir.Call("IF", (ir.Binary("<", which, ir.Number(1.0)), ir.ErrorLiteral(ErrorCode.VALUE), tree))
     wrong = ir.Call("INDEX", (areas[0], *arguments[1:]))
-    return ir.Call("IF", (ir.Call("ISERROR", (arguments[3],)), wrong, tree))
+    return ir.Call("IF", (ir.Call("ISERROR", (which,)), wrong, tree))
 
 
 def _row_or_column(name: str) -> Callable[[TreeLowering, Arguments, Scope], int | None]:

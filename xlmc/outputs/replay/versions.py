@@ -211,6 +211,7 @@ RULES: Final = (
         _calls(*_CRITERIA, *_DATABASE),
     ),
     Rule("0.12.0", "MATCH with -1 ends at the first equal or smaller cell", _calls("MATCH")),
+    Rule("0.12.0", "INDEX of several areas with an empty last argument is #VALUE!", _calls("INDEX")),
     Rule("0.12.0", "LOOKUP searches the first of several columns", _calls("LOOKUP")),
     Rule(
         "0.12.0",

@@ -69,6 +69,7 @@ def same_derivatives():
 
     def compare(jet, f, point, rel=1e-12):
         k = len(point)
+        assert jet.x.size == 1
         wide = align([jet, Jet(np.zeros(1), tuple(range(k)), np.zeros((k, 1)), np.zeros((k, k, 1)))])[0].spread()
         unit = np.eye(k, dtype=int)
 

@@ -174,8 +174,7 @@ def conditional(function: Function, result: Value, operands: Sequence[Operand]) 
     derivatives.
     """
     alone = function.name in ("SUMIF", "AVERAGEIF")
-    slot = (2 if len(operands) > 2 else 0) if alone else 0
-    cells = operands[slot]
+    cells = operands[2 if alone and len(operands) > 2 else 0]
     values = [operand.value for operand in operands]
     n = result.shape[0]
 
@@ -184,7 +183,7 @@ def conditional(function: Function, result: Value, operands: Sequence[Operand]) 
             return part
         lead = part.shape[:axes]
         rows = np.broadcast_to(part, (*lead, n, *cells.value.shape[1:])).reshape(-1, n, *cells.value.shape[1:])
-        sums = [_sum_of(function, values, slot if len(values) > 2 or not alone else 2, row, cells) for row in rows]
+        sums = [_sum_of(function, values, 2 if alone else 0, row, cells) for row in rows]
         return np.asarray(sums).reshape(*lead, *result.shape)
 
     return Outcome(replace(cells.jet.each(of), x=result.numbers))

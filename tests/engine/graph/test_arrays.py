@@ -75,6 +75,13 @@ def test_one_cell(dag, rows, row, column, expected):
     assert pick(value(rows), row, column).objects().tolist() == [expected]
 
 
+@pytest.mark.parametrize(("row", "column"), [(2, 0), (0, 2), (2, 2)])
+def test_beyond_a_range_of_what_varies(dag, row, column):
+    node = dag.add(Range(((dag.input("a"), dag.input("b")), (dag.input("c"), dag.input("d")))))
+    assert items(dag, element(dag, node, row, column)) is NA
+    assert dag.nodes[element(dag, node, 1, 0)].name == "c"
+
+
 def test_one_cell_of_a_single_value(dag):
     node = dag.input("x")
     assert element(dag, node, 3, 4) == node
@@ -298,6 +305,7 @@ def test_quotients_by_powers_of_two_are_products(lower, formula, name):
     ("formula", "expected"),
     [
         ("A1/8", [0.375, 0.625]), ("A1/-0.25", [-12.0, -20.0]), ("A1^2", [9.0, 25.0]), ("A1+0", [3.0, 5.0]),
+        ("0+A1", [3.0, 5.0]), ("Z99", [0.0, 0.0]),
         ("SUM(IF(A1>4,A1:B1,C1)*2)", [0.0, 18.0]), ("SUM(A1:A2*B1)", [32.0, 40.0]),
         ("SUM(IF(A1>4,B1:B2,7))", [7.0, 4.0]), ("COUNT(A1:A2/{1,0})", [2.0, 2.0]),
     ],

@@ -162,6 +162,15 @@ def test_an_error_of_an_operand_leaves_its_trace(lost, formula):
     assert lost[formula.replace("{}", "(1/A1)")][4] == ErrorCode.DIV0
 
 
+LARGE = ["EXP(A1)", "A1^60", "A1^B1^B1", "10^A1", "EXP(ABS(A1))", "A1*1E200*1E200", "A1/1E-200/1E-200", "(A1*1E150)^3"]
+
+
+def test_an_overflow_leaves_its_trace(loop):
+    """Of 10^6 each is too large: `#NUM!`, though the arc tangent of infinity is a number."""
+    codes = loop([f"ATAN({formula})" for formula in LARGE])[1]
+    assert [code[8] for code in codes.values()] == [ErrorCode.NUM] * len(LARGE)
+
+
 def rule_of(lower, formula):
     """The rule of the last function of a formula of A1 and B1; the names of nodes that it reads."""
     cells = {"A1": 0.0, "B1": 0.0, "C1": "text", "C2": "3", "D1": "=1/0", "Z1": f"={formula}"}

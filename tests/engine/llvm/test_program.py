@@ -179,6 +179,7 @@ OWN_WORDS = {
         "declare",
         "internal",
         "noinline",
+        "alignstack",
         "noalias",
         "ret",
     ),

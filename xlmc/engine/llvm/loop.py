@@ -7,6 +7,7 @@ from typing import Any, Final, NamedTuple
 
 from llvmlite import ir
 
+from xlmc.engine.cache_lines import CACHE_LINE
 from xlmc.engine.graph.graph import Dag
 from xlmc.engine.llvm.body import Body, Loaded, contexts
 from xlmc.engine.llvm.loop_rules import LoopRule, Operand
@@ -80,11 +81,7 @@ def _inner(
     """Write the loop itself; its arrays do not overlap, so that it can run several trials at once."""
     arrays = [*(load.stored for load in loads), *(dag.types[node] for node in stores)]
     types = [*map(_pointer_type, arrays), _LONG.as_pointer(), _BYTE.as_pointer(), _DOUBLE.as_pointer(), _LONG]
-    function = ir.Function(module, ir.FunctionType(_LONG, types), "loop")
-    function.linkage = "internal"
-    function.attributes.add("noinline")  # in its caller, each access would list all the arrays that it does not overlap
-    for argument in function.args[:-1]:
-        argument.add_attribute("noalias")
+    function = _loop_function(module, types)
     *pointers, survivors, wrongs, constants, n = function.args
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     constants_in = {of: builder.load(builder.gep(constants, [_LONG(at)])) for of, at in numbers.items()}
@@ -138,11 +135,7 @@ def loop_over_trials(
         trial: emits the computation of one trial, from the arrays' pointers and its number.
     """
     types = [*map(_pointer_type, arrays), _LONG]
-    function = ir.Function(module, ir.FunctionType(_LONG, types), "loop")
-    function.linkage = "internal"
-    function.attributes.add("noinline")
-    for argument in function.args[:-1]:
-        argument.add_attribute("noalias")
+    function = _loop_function(module, types)
     *pointers, n = function.args
     builder = ir.IRBuilder(function.append_basic_block("entry"))
     before, body, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
@@ -157,6 +150,17 @@ def loop_over_trials(
     again.set_metadata("llvm.loop", _interleaved(module, 1))
     builder.position_at_end(after)
     builder.ret(_LONG(0))
+    return function
+
+
+def _loop_function(module: ir.Module, types: Sequence[ir.Type]) -> ir.Function:
+    """Begin the function of a loop; all of its arguments but the last are arrays that do not overlap."""
+    function = ir.Function(module, ir.FunctionType(_LONG, types), "loop")
+    function.linkage = "internal"
+    function.attributes.add("noinline")  # in its caller, each access would list all the arrays that it does not overlap
+    function.attributes.alignstack = CACHE_LINE  # else LLVM lets vectors on the stack lie in two lines
+    for argument in function.args[:-1]:
+        argument.add_attribute("noalias")
     return function
 
 

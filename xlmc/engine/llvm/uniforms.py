@@ -181,13 +181,9 @@ def _wide_loop() -> NativeLoop:
     state, increment, offset, scale = _load_stream(builder, words, _load_numbers(builder, jump_words))
     ahead, further = jump(_LANES)
     summands = [_repeat(builder, limb) for limb in _limbs(builder, builder.mul(increment, _STATE(further)))]
-    factors = [ir.Constant(_LONGS, [ahead >> _LIMB * i & (1 << _LIMB) - 1] * _LANES) for i in range(3)]
+    factors = _constant_limbs([ahead] * _LANES)
     offsets, scales = _repeat(builder, offset), _repeat(builder, scale)
-    beginning = [ir.Constant(_LONGS, ir.Undefined)] * 3
-    for lane in range(_LANES):
-        parts = zip(beginning, _limbs(builder, state), strict=True)
-        beginning = [builder.insert_element(vector, limb, ir.IntType(32)(lane)) for vector, limb in parts]
-        state = builder.add(builder.mul(state, _STATE(_MULTIPLIER)), increment)
+    beginning = _lanes(builder, state, increment)
     spare = builder.alloca(_DOUBLE, _LANES)
     before, body, after = builder.block, *(function.append_basic_block(name) for name in ("body", "after"))
     builder.cbranch(builder.icmp_signed("<", _LONG(0), n), body, after)
@@ -216,6 +212,22 @@ def _wide_loop() -> NativeLoop:
             builder.store(number, builder.gep(row, [builder.add(first_of_rest, _LONG(lane))]))
     builder.ret(_LONG(0))
     return machine().native(module, _NAME)
+
+
+def _lanes(builder: ir.IRBuilder, state: Any, increment: Any) -> Any:
+    """Emit the parts of the states that follow from a state by 0, 1, 2, ... steps."""
+    jumps = [jump(lane) for lane in range(_LANES)]
+    factors, summands = (_constant_limbs([each[part] for each in jumps]) for part in (0, 1))
+    states, increments = ([_repeat(builder, limb) for limb in _limbs(builder, number)] for number in (state, increment))
+    added = _advance_limbs(builder, increments, summands, [_vector(0)] * 3)
+    without_carries = [builder.and_(limb, _vector((1 << _LIMB) - 1)) for limb in added]
+    return _advance_limbs(builder, states, factors, without_carries)
+
+
+def _constant_limbs(numbers: Sequence[int]) -> list[Any]:
+    """Make vectors of the three parts of `_LANES` numbers, the lowest first."""
+    mask = (1 << _LIMB) - 1
+    return [ir.Constant(_LONGS, [number >> _LIMB * i & mask for number in numbers]) for i in range(3)]
 
 
 def _limbs(builder: ir.IRBuilder, state: Any) -> list[Any]:
@@ -252,11 +264,17 @@ def _advance_limbs(builder: ir.IRBuilder, limbs: Sequence[Any], factors: Sequenc
 
 
 def _halves_of_limbs(builder: ir.IRBuilder, limbs: Sequence[Any]) -> tuple[Any, Any]:
-    """Emit the upper and the lower halves of states."""
+    """Emit the upper and the lower halves of states; the lower ones odd, as `_fraction` wants them.
+
+    Two words shifted together are one instruction, which also drops what was carried.
+    """
     first, second, third = limbs
-    low = builder.or_(builder.and_(first, _vector((1 << _LIMB) - 1)), builder.shl(second, _vector(_LIMB)))
-    middle = builder.and_(builder.lshr(second, _vector(64 - _LIMB)), _vector((1 << 2 * _LIMB - 64) - 1))
-    return builder.or_(middle, builder.shl(third, _vector(2 * _LIMB - 64))), low
+    type_ = ir.FunctionType(_LONGS, [_LONGS] * 3)
+    shifted = builder.module.declare_intrinsic("llvm.fshl.v8i64", (), type_)
+    unused = 64 - _LIMB
+    high = builder.call(shifted, [third, builder.shl(second, _vector(unused)), _vector(2 * _LIMB - 64)])
+    upper = builder.call(shifted, [second, _vector(1 << unused), _vector(_LIMB)])
+    return high, builder.or_(builder.and_(first, _vector((1 << _LIMB) - 1)), upper)
 
 
 def _vector(number: int) -> Any:

@@ -19,7 +19,7 @@ from xlmc.analysis.studies.sensitivity import sensitivities
 from xlmc.montecarlo.definitions.forms import PLAIN, Form, span_text
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.interruption import checkpoint
-from xlmc.montecarlo.number_text import count_text, fixed_text, number_text
+from xlmc.montecarlo.number_text import MOST_DIGITS, count_text, fixed_text, number_text, two_digit_exponent
 from xlmc.montecarlo.statistics import (
     Estimate,
     Sample,
@@ -227,29 +227,28 @@ def _texts(label: str, now: Estimate, before: Estimate | None, form: Form) -> tu
     apart = now.value - before.value
     if not math.isfinite(apart):
         return written(now), written(before), ""
-    sign = "+" if apart > 0 else "−" if apart < 0 else ""
     if form.kind is Kind.DATE:
-        return written(now), written(before), sign + span_text(abs(apart))
-    decimals = form.decimals_of_both(now, before)
+        return written(now), written(before), _sign(apart) + span_text(abs(apart))
+    decimals, size = form.decimals_of_both(now, before), max(abs(now.value), abs(before.value))
+    if decimals is not None and size and decimals + two_digit_exponent(form.factor * size) >= MOST_DIGITS:
+        decimals = None  # an error below the last bit
     if decimals is None and apart:  # two numbers without an error, of which six digits are shown
-        apart = round(apart, 5 - math.floor(math.log10(max(abs(now.value), abs(before.value)))))
+        apart = round(apart, 5 - math.floor(math.log10(size)))
     shown, old = (form.estimate(each, decimals) for each in (now, before))
-    return shown, old, sign + form.number(abs(apart), decimals)
+    return shown, old, _sign(apart) + form.number(abs(apart), decimals)
+
+
+def _sign(number: float) -> str:
+    return "+" if number > 0 else "−" if number < 0 else ""
 
 
 def _moved(figure: Figure, now: ForecastResult, before: ForecastResult) -> str:
     """Say how the mean moved: `Nissan impact speed: mean 4.72 → 5.31 mph`."""
     units = f" {figure.answer.units}" if figure.answer.units else ""
-    old, new = _texts("Mean", before.mean, now.mean, now.form)[:2]
-    old, new = (_without_error(text) for text in (old, new))
+    means, form = (before.mean, now.mean), now.form
+    decimals = form.decimals_of_both(*means)
+    old, new = (form.value(each) if decimals is None else form.number(each.value, decimals) for each in means)
     return f"{figure.answer.name}: mean {old} → {new}{units}"
-
-
-def _without_error(text: str) -> str:
-    """Take the error out of `$11.8 ± 0.2`, but not what stands after it: `32.0 ± 0.3 %` is `32.0 %`."""
-    value, _, error = text.partition(" ± ")
-    after = error.partition(" ")[2]
-    return f"{value} {after}" if after and not value.endswith(after) else value
 
 
 _SPREAD: Final = "Standard deviation"

@@ -151,10 +151,10 @@ def learn(
     distance: Distance,
     dimensions: int,
     random: np.random.Generator,
-    say: Say = lambda _: None,
-    most: float = math.inf,
-    known: Sequence[Evidence] = (),
-    strata: Sequence[Distance] = (),
+    say: Say,
+    most: float,
+    known: Sequence[Evidence],
+    strata: Sequence[Distance],
 ) -> Learned:
     """Find the region where the distance is 0, and describe it; in no more evaluations than `most`, about.
 
@@ -164,8 +164,8 @@ def learn(
         random: to learn with.
         say: called with the evaluations so far.
         most: evaluations.
-        known: trials that were drawn before; those that were accepted are evidence.
-        strata: distances of parts of all trials, whose populations go apart; by default all together.
+        known: trials that were drawn before, at least once; those that were accepted are evidence.
+        strata: distances of parts of all trials, whose populations go apart; all together where there are none.
     """
     descents: list[Descent] = []
     apart = strata or (distance,)

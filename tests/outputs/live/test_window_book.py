@@ -67,6 +67,7 @@ def handles(row, part="numbers"):
         (5.0, 1e9, 0.1),  # fifty steps of a tenth
         (4.99, 1e9, 0.01),
         (500.0, 0.0, 10.0),
+        (0.5, 1e9, 0.01),
         (0.0, 250.0, 1.0),  # of a size, a fiftieth of a fifth
         (0.0, 249.0, 0.1),
         (math.inf, 2.5, 0.01),
@@ -171,6 +172,7 @@ def test_shapes_of_errors(readings):
         density = stats.norm(mean, sigma).pdf
         np.testing.assert_allclose(shape["heights"], density(middles) / density(mean), atol=6e-4)
     sigma = shapes["marks"]["high"] / 60
+    assert sigma > 1
     assert shapes["marks"]["low"] == pytest.approx(60 / sigma, rel=1e-12)  # as many times less as more
 
 
@@ -197,11 +199,12 @@ def test_a_filter_that_is_changed(readings):
 
 
 def test_filters_of_one_forecast_say_so(model_of):
-    filters = {"one": {"cell": "B1", "at_most": 5.0, "only_for": ("x",)}, "all": {"cell": "B1", "at_least": 0.1}}
+    filters = {"one": {"cell": "B1", "at_most": 500.0, "only_for": ("x",)}, "all": {"cell": "B1", "at_least": 0.1}}
     model = model_of({"A1": 0.5, "B1": "=A1*2"}, {"u": {"cell": "A1", "low": 0.0, "high": 1.0}}, {"x": "B1"}, filters)
     rows = named(filter_rows(model, OWN))
     assert [*rows] == ["all", "one"]
     assert rows["one"]["because"] == "only for x"
+    assert rows["one"]["step"] == 1.0  # of one number, 500/250
     assert rows["all"]["because"] == ""
 
 

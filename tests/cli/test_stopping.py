@@ -6,6 +6,7 @@ import signal
 import sys
 import time
 from contextlib import closing
+from importlib import import_module
 
 import openpyxl
 import pytest
@@ -138,6 +139,26 @@ def test_ctrl_c_keeps_what_was_accepted(xlmc, started, book, tmp_path, monkeypat
     repeated = xlmc(*record["run.repeat"].split()[1:])
     assert repeated.code == 0
     assert record_of(results)["run.fingerprint"] == record["run.fingerprint"]
+
+
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
+@pytest.mark.skipif(os.name != "posix", reason="process groups are POSIX's")
+def test_ctrl_c_in_the_reference_of_methods_keeps_an_answer(started, book, tmp_path, monkeypatch):
+    def endless(*given):
+        print("reference", file=sys.stderr, flush=True)
+        time.sleep(600)
+
+    monkeypatch.setattr(import_module("xlmc.analysis.studies.methods.study"), "reference_of", endless)
+    running = started("methods", book, "--quiet", "-o", "methods.json")
+    assert running.err.readline() == "reference\n"
+    os.killpg(running.number, signal.SIGINT)
+    outcome = running.ended()
+    assert outcome.code == 130, outcome.err
+    assert "Traceback" not in outcome.err
+    assert outcome.err.splitlines()[-1].endswith("; the output is what was known by then.")
+    assert "Recommended: Monte Carlo" in outcome.out
+    assert "the study was interrupted before it" in " ".join(outcome.out.split())
+    assert "ended_early" in (tmp_path / "methods.json").read_text(encoding="utf-8")
 
 
 STANDING = Progress(

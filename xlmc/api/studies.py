@@ -131,6 +131,7 @@ def methods(
     trials: int | None = None,
     replicates: int | None = None,
     reference_trials: int | None = None,
+    time_limit: str | float | None = None,
     seed: int | None = None,
     quick: bool = False,
 ) -> Study:
@@ -143,6 +144,8 @@ def methods(
         trials: of the longest runs.
         replicates: runs of each length.
         reference_trials: of the long run that errors are measured against.
+        time_limit: of all, about: `60s`, `5m`, or seconds; what takes too much of it is left out, and named. By default
+            a minute with more than 20 assumptions, if no number of trials or runs is given.
         seed: of the reference.
         quick: few and short runs, in about half a minute.
 
@@ -151,9 +154,16 @@ def methods(
     """
     from xlmc.analysis.studies.methods import quick_settings, study
 
-    asked = {"trials": trials, "replicates": replicates, "reference_trials": reference_trials}
+    asked = {
+        "trials": trials,
+        "replicates": replicates,
+        "reference_trials": reference_trials,
+        "time_limit": time_limit,
+    }
     given: dict[str, Any] = {name: value for name, value in asked.items() if value is not None}
-    return study(model._compiled, accuracy=accuracy, seed=seed, **(quick_settings(given) if quick else given))
+    if quick:
+        given = quick_settings(model._compiled, given)
+    return study(model._compiled, accuracy=accuracy, seed=seed, **given)
 
 
 def stability(model: Model, *, trials: int | None = None, seed: int | None = None, jobs: int = 1) -> Stability:

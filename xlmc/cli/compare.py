@@ -18,7 +18,7 @@ from xlmc.cli.options import (
     tolerance_option,
     trials_option,
 )
-from xlmc.cli.study_output import STUDY, StudyOutput, end_early, study_options
+from xlmc.cli.study_output import STUDY, StudyOutput, end_early, finishing, study_options
 
 if TYPE_CHECKING:
     from xlmc.analysis.studies.comparison import ForecastComparison
@@ -89,8 +89,8 @@ def compare(
             causes=not no_causes,
             tell=tell,
         )
-    report = compare_report(result)
-    written = output.give(report, files)
+    with finishing():
+        written = output.give(compare_report(result), files)
     runs = list(zip(book_names(result), (result.first, result.second), strict=True))
     notices([replace(notice, where=name) for name, run in runs for notice in direction_notices(run.results.values())])
     doubts = [f"{name}: {warning}" for name, run in runs for warning in run.warnings]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from xlmc.cli.options import FilePath, WholeNumber, functions_option, seed_option
-from xlmc.cli.study_output import NOT_TO_BE_USED, StudyOutput, end_early, study_options
+from xlmc.cli.study_output import NOT_TO_BE_USED, StudyOutput, end_early, finishing, study_options
 
 if TYPE_CHECKING:
     from xlmc.excel.own_functions import OwnFunctions
@@ -39,6 +39,11 @@ __all__ = ["methods"]
     " many as the shortest runs, or what takes two and a half seconds]",
 )
 @click.option("--replicates", type=WholeNumber(2), help="How many runs of each length.  [default: 24]")
+@click.option(
+    "--time-limit",
+    help="About how long it may take at most, such as 60s or 5m; what takes too much of it is left out, and named."
+    "  [default: 1 min with more than 20 assumptions, else none]",
+)
 @click.option("--quick", is_flag=True, help="Few and short runs: a first look, in about half a minute.")
 @seed_option("the reference; the runs have others", "the book's")
 @study_options("the figure (.png), a workbook (.xlsx), a document (.pdf, .docx), a page (.html), JSON (.json)")
@@ -49,6 +54,7 @@ def methods(
     reference_trials: int | None,
     trials: int | None,
     replicates: int | None,
+    time_limit: str | None,
     quick: bool,
     seed: int | None,
     output: StudyOutput,
@@ -56,19 +62,25 @@ def methods(
 ) -> None:
     """Measure every method of uncertainty analysis on BOOK: time, evaluations, errors, and which to use."""
     from xlmc.analysis.studies.methods import quick_settings, recommendation, study
-    from xlmc.cli.progress_bar import step_line
+    from xlmc.cli.progress_bar import plan_note, step_line
     from xlmc.outputs.methods import in_short, methods_report
 
     model, files = output.open(book, functions, drawn=True)
-    asked: dict[str, Any] = {"reference_trials": reference_trials, "trials": trials, "replicates": replicates}
+    asked: dict[str, Any] = {
+        "reference_trials": reference_trials,
+        "trials": trials,
+        "replicates": replicates,
+        "time_limit": time_limit,
+    }
     given = {name: value for name, value in asked.items() if value is not None}
     if quick:
-        given = quick_settings(given)
+        given = quick_settings(model, given)
     with step_line() as tell:
-        result = study(model, accuracy=accuracy, seed=seed, tell=tell, **given)
-    report = methods_report(result, figures=files.show_figures)
-    advice = (line for each in recommendation(result) for line in (each, ""))
-    written = output.give(report, files, [*in_short(result), "", *advice])
+        result = study(model, accuracy=accuracy, seed=seed, tell=tell, plan=plan_note, **given)
+    with finishing():
+        report = methods_report(result, figures=files.show_figures)
+        advice = (line for each in recommendation(result) for line in (each, ""))
+        written = output.give(report, files, [*in_short(result), "", *advice])
     written.check()
     end_early(result.ended)
     if result.reference.warnings:

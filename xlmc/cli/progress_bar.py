@@ -6,14 +6,14 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
-from xlmc.cli.terminal import encodable, is_quiet, on_terminal
+from xlmc.cli.terminal import encodable, is_quiet, on_terminal, say
 from xlmc.excel.workbook.printable import printable
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.loop.stopping import Progress
     from xlmc.montecarlo.simulation.simulate import OnProgress
 
-__all__ = ["errors_line", "progress_bar", "step_line", "trials_line"]
+__all__ = ["errors_line", "plan_note", "progress_bar", "step_line", "trials_line"]
 
 
 def trials_line(standing: Progress) -> str:
@@ -76,3 +76,8 @@ def step_line() -> Iterator[Callable[[str], None] | None]:
 
     with Console(stderr=True).status("", spinner="line") as status:
         yield lambda what: status.update(escape(encodable(printable(f"running: {what}"), err=True)))
+
+
+def plan_note(what: str) -> None:
+    """Say beforehand on stderr what a long study will do, and how long that takes, as a note."""
+    say(f"note: {what}", err=True)

@@ -12,7 +12,7 @@ from xlmc.cli.options import (
     chance_option,
     tolerance_option,
 )
-from xlmc.cli.study_output import StudyOutput, conclude, study_run_options
+from xlmc.cli.study_output import StudyOutput, conclude, finishing, study_run_options
 
 if TYPE_CHECKING:
     from xlmc.excel.own_functions import OwnFunctions
@@ -80,7 +80,8 @@ def screen(
             **run,
             tell=tell,
         )
-    report = screen_report(result)
-    message = f"{report.below.partition(':')[0]}: what it could do without"
-    written = output.give(report, files, [message, *printed(result)])
+    with finishing():
+        report = screen_report(result)
+        message = f"{report.below.partition(':')[0]}: what it could do without"
+        written = output.give(report, files, [message, *printed(result)])
     conclude(written, result.run, ended=result.ended)

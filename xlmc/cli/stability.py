@@ -13,6 +13,7 @@ from xlmc.cli.study_output import (
     STUDY_OF_A_RUN,
     StudyOutput,
     end_early,
+    finishing,
     study_options,
 )
 
@@ -48,8 +49,8 @@ def stability(
     model, files = output.open(book, functions, of_run=True)
     with step_line() as tell:
         result = study.stability(model, trials=trials, seed=seed, jobs=jobs, tell=tell)
-    report = stability_report(result, all_cells)
-    written = output.give(report, files)
+    with finishing():
+        written = output.give(stability_report(result, all_cells), files)
     warnings(result.run.warnings, result.run.refused)
     written.check()
     end_early(result.ended)

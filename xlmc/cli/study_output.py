@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import wraps
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar, cast
@@ -44,6 +45,7 @@ __all__ = [
     "StudyOutput",
     "conclude",
     "end_early",
+    "finishing",
     "study_options",
     "study_run_options",
 ]
@@ -166,6 +168,16 @@ def conclude(written: Written, run: RunResult, doubts: Sequence[str] = (), ended
     end_early(ended)
     if reasons:
         raise click.exceptions.Exit(NOT_TO_BE_USED)
+
+
+@contextmanager
+def finishing() -> Iterator[None]:
+    """Let a first Ctrl-C wait while the output of a study is made, which then lacks nothing; a second one ends it."""
+    from xlmc.montecarlo.loop.stopping.watch import Interruption
+
+    with Interruption(wanted=True) as interruption:
+        interruption.keeping = True
+        yield
 
 
 def end_early(ended: str) -> None:

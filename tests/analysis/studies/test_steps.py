@@ -83,6 +83,47 @@ def test_ctrl_c_ends_the_steps_once_there_is_something_to_tell():
             signal.raise_signal(signal.SIGINT)
 
 
+def test_a_step_can_be_left_at_once():
+    with Steps() as steps:
+        steps.can_end()
+        left = True
+        with steps.left_at_once():
+            signal.raise_signal(signal.SIGINT)
+            left = False
+        assert left
+        assert steps.ended
+        with pytest.raises(KeyboardInterrupt), steps.left_at_once():
+            signal.raise_signal(signal.SIGINT)
+
+
+def test_a_step_that_fails_by_itself_is_no_ctrl_c():
+    with Steps() as steps:
+        steps.can_end()
+        with pytest.raises(KeyboardInterrupt), steps.left_at_once():
+            raise KeyboardInterrupt
+        assert not steps.ended
+
+
+def test_what_will_be_done_is_said_once_of_a_long_study():
+    said = []
+    with Steps(plan=said.append) as steps:
+        steps.say_plan("Makes 2 runs", 9.0)
+        steps.say_plan("Makes 9 runs", 130.0)
+        steps.say_plan("Makes 8 runs", 120.0)
+    assert said == ["Makes 9 runs, about 2 min. Ctrl-C ends it with what is known by then."]
+
+
+def test_no_step_goes_on_beyond_the_limit_of_time():
+    messages, now = [], iter([0.0, 10.0, 14.0])
+    with Steps(messages.append, lambda: next(now)) as steps:
+        steps.latest = 17.0
+        steps.begin("first")
+        steps.expect(60)
+        for name in ("second", "third"):
+            steps.begin(name)
+    assert messages[1:] == ["second (2 of about 61, 7 s left)", "third (3 of about 61, 3 s left)"]
+
+
 def test_many_assumptions_are_held_at_once_before_any_is_alone(book):
     result = screen(wide(book, 40), trials=2_000, seed=1)
     assert set(result.at_once.names) == {f"b{k}" for k in range(40)}

@@ -24,6 +24,7 @@ from xlmc.analysis.studies.methods.need import (
 )
 from xlmc.analysis.studies.methods.recommendation import parts_of
 from xlmc.analysis.studies.methods.study import LENGTHS, STEP, ladder_of
+from xlmc.analysis.studies.steps import Steps
 
 CONSISTENT = ("mc", "lhs", "sobol", "grid")
 
@@ -328,8 +329,8 @@ def test_the_run_lengths_span_four_decades(book, monkeypatch):
     """However slow the machine is just now."""
     monkeypatch.setattr(import_module("xlmc.analysis.studies.methods.study"), "_LONGEST_RUN", np.inf)
     model = book({"A1": 0.0, "B1": "=A1"}, {"x": {"cell": "A1", "low": -1, "high": 1}}, {"y": "B1"})
-    ladder = ladder_of(model, None, 1, 1.0)
+    ladder = ladder_of(model, None, 1, 1.0, np.inf, Steps())
     assert ladder[0] == 128
     assert len(ladder) == LENGTHS
     assert ladder[-1] / ladder[0] == STEP ** (LENGTHS - 1) >= 10_000
-    assert ladder_of(model, 1 << 13, 1, 0.01) == (512, 2_048, 8_192)
+    assert ladder_of(model, 1 << 13, 1, 0.01, np.inf, Steps()) == (512, 2_048, 8_192)

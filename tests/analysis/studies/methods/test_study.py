@@ -2,7 +2,9 @@ from __future__ import annotations
 
 import re
 import signal
+import time
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -13,8 +15,11 @@ from xlmc.analysis.studies.methods.curve import rms_of, runs_of, slope_of
 from xlmc.analysis.studies.methods.need import need, reach_of, worst_error
 from xlmc.analysis.studies.methods.optimised import in_step
 from xlmc.analysis.studies.methods.sampled import MONTE_CARLO
+from xlmc.analysis.studies.methods.study import MANY, quick_settings
 from xlmc.errors import SimulationError
 from xlmc.outputs.methods import methods_report, methods_tables
+
+module = import_module("xlmc.analysis.studies.methods.study")
 
 REPLICATES, TRIALS = 100, 8_192
 
@@ -317,6 +322,92 @@ def test_an_interrupted_study_answers_by_the_shortest_runs(straight, at):
     assert methods_report(result, figures=False)
     left_out = "the study was interrupted before it"
     assert result.absent.get("Taylor, second order") == (left_out if at.startswith("Taylor") else None)
+
+
+@pytest.fixture
+def usual_interrupts():
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("usual_interrupts")
+def test_before_the_reference_is_run_the_short_run_answers(straight):
+    """y = 10 + 2x + z has the mean 10 and the SD √5; 65,536 trials know it to 0.009, five times which is 0.045."""
+
+    def tell(what):
+        if what.startswith("the reference"):
+            signal.raise_signal(signal.SIGINT)
+
+    result = study(straight, tell=tell)
+    assert result.ended
+    assert result.reference.trials == 65_536
+    assert result.reference.answers["y"].mean == pytest.approx(10.0, abs=0.045)
+    assert [curve.method for curve in result.curves] == [MONTE_CARLO]
+    assert set(result.absent.values()) == {"the study was interrupted before it"}
+    assert "Recommended: Monte Carlo" in "\n".join(recommendation(result))
+    assert methods_report(result, figures=False)
+
+
+@pytest.mark.usefixtures("usual_interrupts")
+def test_ctrl_c_does_not_wait_for_a_run_to_end(straight, monkeypatch):
+    monkeypatch.setattr(module, "reference_of", lambda *given: signal.raise_signal(signal.SIGINT) or time.sleep(600))
+    result = study(straight)
+    assert result.ended
+    assert result.reference.trials == 65_536
+
+
+def test_many_assumptions_are_measured_within_a_limit_of_time(book):
+    """Of a second a quarter goes by before the methods that draw take turns: what there is no time for is named."""
+    count = MANY + 1
+    cells = {f"A{row}": 0.5 for row in range(1, count + 1)} | {"B1": f"=SUM(A1:A{count})"}
+    model = book(
+        cells, {f"x{row}": {"cell": f"A{row}", "low": 0, "high": 1} for row in range(1, count + 1)}, {"y": "B1"}
+    )
+    result = study(model, time_limit="0.5s")
+    assert not result.ended
+    assert MONTE_CARLO.name not in result.absent
+    assert next(len(curve.lengths) for curve in result.curves if curve.method is MONTE_CARLO) >= 3
+    assert any("give a longer time with --time-limit" in why for why in result.absent.values())
+    assert len({len(curve.lengths) for curve in result.curves}) == 1
+    assert "Recommended: " in "\n".join(recommendation(result))
+
+
+@pytest.mark.parametrize(
+    ("count", "given", "limit"),
+    [
+        (MANY, {}, None),
+        (MANY + 1, {}, "about 60 s"),
+        (MANY + 1, {"time_limit": "2m"}, "about 2 min"),
+        (1, {"time_limit": 40}, "about 40 s"),
+        (MANY + 1, {"replicates": 2}, None),
+    ],
+)
+def test_what_will_be_measured_is_said_before(book, monkeypatch, count, given, limit):
+    class Said(Exception):  # noqa: N818 - it is no fault
+        pass
+
+    def plan(what):
+        raise Said(what)
+
+    cells = {f"A{row}": 0.5 for row in range(1, count + 1)} | {"B1": f"=SUM(A1:A{count})"}
+    model = book(
+        cells, {f"x{row}": {"cell": f"A{row}", "low": 0, "high": 1} for row in range(1, count + 1)}, {"y": "B1"}
+    )
+    with pytest.raises(Said) as said:
+        study(model, plan=plan, **given)
+    text = str(said.value)
+    assert text.startswith(f"Measures 12 methods on {count} assumptions and 1 forecasts: a reference of ")
+    assert ("--time-limit" in text) == (limit is not None)
+    assert limit is None or limit in text
+
+
+def test_quick_settings_limit_the_time_of_many_assumptions(straight, book):
+    assert quick_settings(straight, {})["replicates"] == 8
+    cells = {f"A{row}": 0.5 for row in range(1, MANY + 2)} | {"B1": f"=SUM(A1:A{MANY + 1})"}
+    many = book(cells, {f"x{row}": {"cell": f"A{row}", "low": 0, "high": 1} for row in range(1, MANY + 2)}, {"y": "B1"})
+    assert quick_settings(many, {}) == {"time_limit": 30.0}
+    assert quick_settings(many, {"trials": 4_096})["trials"] == 4_096
 
 
 def test_slopes():

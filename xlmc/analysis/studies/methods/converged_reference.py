@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from functools import partial
 from typing import Final
 
 import numpy as np
@@ -25,7 +24,7 @@ from xlmc.montecarlo.simulation.simulation import RunResult
 from xlmc.montecarlo.statistics import Estimate, Sample
 from xlmc.montecarlo.statistics.heavy_tails import heavy_tail
 
-__all__ = ["Reference", "fastest_engine", "reference_of", "reference_size", "unfiltered_of"]
+__all__ = ["FIRST", "PROBE", "Probe", "Reference", "fastest_engine", "probe_of", "reference_of", "unfiltered_of"]
 
 _MOST_REFERENCE: Final = 1 << 25
 _LEAST: Final = 1 << 14
@@ -36,7 +35,11 @@ _LARGEST: Final = 1e150
 
 _UNFILTERED: Final = 1 << 20
 
-_PROBE: Final = 65_536
+PROBE, FIRST = 65_536, 4_096
+"""Trials that the workbook is timed by, and of the run before that, which compiles what must be compiled."""
+
+_ACCEPTED: Final = 100
+"""Accepted trials, without which there is no reference."""
 
 _ROUNDING: Final = 1e-12
 """A standard deviation that is smaller beside the mean is none."""
@@ -122,16 +125,43 @@ def fastest_engine(model: CompiledModel) -> str:
     return "jit"
 
 
-def reference_size(model: CompiledModel, engine: str, seed: int, seconds: float) -> tuple[int, str]:
-    """How many trials take about so many seconds, a power of two, and by which sampling."""
-    run = partial(simulate, model, seed=seed, engine=engine, sampling="mc", keep_inputs=0)
-    run(trials=_PROBE // 16)  # compiles what must be compiled
+@dataclass(frozen=True, slots=True)
+class Probe:
+    """A short run, which says how long longer ones take.
+
+    Attributes:
+        trials, accepted: how many it ran, and how many were accepted.
+        seconds: how long it took, with its statistics.
+        reference: what it says itself, for want of a longer run; None if too few trials are accepted.
+    """
+
+    trials: int
+    accepted: int
+    seconds: float
+    reference: Reference | None
+
+    @property
+    def sampling(self) -> str:
+        """That of the reference: Sobol points where no filter rejects anything."""
+        return "sobol" if self.accepted == self.trials else "mc"
+
+    def trials_in(self, seconds: float) -> int:
+        """How many trials of the reference take about so many seconds, a power of two."""
+        rate = self.trials / self.seconds
+        most = min(_MOST_REFERENCE, int(rate * seconds), int(_MOST_ACCEPTED * self.trials / max(self.accepted, 1)))
+        return 1 << (max(most, _LEAST).bit_length() - 1)
+
+
+def probe_of(model: CompiledModel, engine: str, seed: int, trials: int) -> Probe:
+    """Make a short run, of independent trials.
+
+    Raises:
+        SimulationError: a forecast is too large for its errors to be squared.
+    """
     started = time.perf_counter()
-    probe = run(trials=_PROBE)
-    rate = _PROBE / (time.perf_counter() - started)
-    most = min(_MOST_REFERENCE, int(rate * seconds), int(_MOST_ACCEPTED * _PROBE / max(probe.accepted, 1)))
-    size = 1 << (max(most, _LEAST).bit_length() - 1)
-    return size, "sobol" if probe.accepted == probe.trials else "mc"
+    result = simulate(model, trials=trials, seed=seed, engine=engine, sampling="mc", keep_inputs=_WATCHED)
+    reference = _of_run(result, started) if result.accepted >= _ACCEPTED else None
+    return Probe(result.trials, result.accepted, time.perf_counter() - started, reference)
 
 
 def reference_of(model: CompiledModel, trials: int, sampling: str, engine: str, seed: int) -> Reference:
@@ -142,7 +172,7 @@ def reference_of(model: CompiledModel, trials: int, sampling: str, engine: str, 
     """
     started = time.perf_counter()
     run = simulate(model, trials=trials, seed=seed, sampling=sampling, engine=engine, keep_inputs=_WATCHED)
-    if run.accepted < 100:
+    if run.accepted < _ACCEPTED:
         message = (
             f"the filters accept {run.accepted} of {count_text(run.trials)} reference trials, "
             "too few to measure methods with"
@@ -150,6 +180,16 @@ def reference_of(model: CompiledModel, trials: int, sampling: str, engine: str, 
         raise SimulationError(
             message, hint="give more reference trials, or see whether the filters contradict the inputs"
         )
+    return _of_run(run, started)
+
+
+def _of_run(run: RunResult, started: float) -> Reference:
+    """Return what a run says of itself, which was begun at `started`, a time of the clock.
+
+    Raises:
+        SimulationError: a forecast is too large for its errors to be squared.
+    """
+    model = run.model
     for forecast in model.forecasts:
         if np.max(np.abs(run[forecast.name].sample.x), initial=0.0) > _LARGEST:
             message = f"the forecast {forecast.name!r} is beyond 1E150 in some trials: its errors cannot be squared"
@@ -158,9 +198,9 @@ def reference_of(model: CompiledModel, trials: int, sampling: str, engine: str, 
     return Reference(
         trials=run.trials,
         accepted=run.accepted,
-        sampling=sampling,
-        engine=engine,
-        seed=seed,
+        sampling=run.settings.sampling,
+        engine=run.settings.engine,
+        seed=run.settings.seed,
         seconds=time.perf_counter() - started,
         answers={name: result[0] for name, result in numbers.items()},
         errors={name: results[1] for name, results in numbers.items()},
@@ -168,7 +208,7 @@ def reference_of(model: CompiledModel, trials: int, sampling: str, engine: str, 
         widths={f.name: _width(run[f.name].sample, numbers[f.name][0]) for f in model.forecasts},
         acceptance=run.acceptance,
         warnings=tuple(run.warnings),
-        extremes=extremes_of(run.forecasts, run.trial_index, seed, run.plan),
+        extremes=extremes_of(run.forecasts, run.trial_index, run.settings.seed, run.plan),
         ordered={f.name: _thinned(run[f.name].sample.x) for f in model.forecasts},
         forms={f.name: run.results[f.name].form for f in model.forecasts},
         heavy={f.name: lost for f in model.forecasts if (lost := _lost(run[f.name].sample.x))},
@@ -220,12 +260,13 @@ def _numbers(run: RunResult, forecast: Forecast) -> tuple[Answer, Answer, Answer
     sample = run[forecast.name].sample
     if sample.n < 2:
         return Answer(), Answer(), Answer()
-    independent = sample if sample.group is None else Sample(sample.x)
+    own = _estimates(sample, forecast.central)
+    single = own if sample.group is None else _estimates(Sample(sample.x), forecast.central)
     root = float(np.sqrt(sample.n))
     return (
-        Answer(*(each.value for each in _estimates(sample, forecast.central))),
-        Answer(*(_error(each) for each in _estimates(sample, forecast.central))),
-        Answer(*(_error(each) * root for each in _estimates(independent, forecast.central))),
+        Answer(*(each.value for each in own)),
+        Answer(*(_error(each) for each in own)),
+        Answer(*(_error(each) * root for each in single)),
     )
 
 

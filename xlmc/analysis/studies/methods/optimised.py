@@ -72,8 +72,12 @@ def in_step(
     threads = [threading.Thread(target=run, args=(index,), daemon=True) for index in range(len(searches))]
     for thread in threads:
         thread.start()
-    for thread in threads:
-        thread.join()
+    try:
+        for thread in threads:
+            thread.join()
+    except BaseException as error:  # Ctrl-C, which the searches are not to outlive
+        round_.fail(error)
+        raise
     if round_.error is not None:
         raise round_.error
     return [result[index] for index in range(len(searches))]
@@ -145,7 +149,11 @@ Point = Mapping[str, float]
 
 @dataclass(frozen=True, slots=True)
 class Optimised:
-    """The range that no accepted trial leaves, as far as the search finds it."""
+    """The range that no accepted trial leaves, as far as the search finds it.
+
+    Attributes:
+        seconds: how long the search may take.
+    """
 
     key: str = "optimised"
     name: str = "Bounds, optimised"
@@ -153,12 +161,14 @@ class Optimised:
     cannot: str = (
         "gives two ends and no likelihood in between; a search may end at an extreme that is not the outermost"
     )
+    seconds: float = np.inf
 
     def run(self, model: CompiledModel, budget: int, seed: int) -> MethodResult:
         """See `Method`; the budget is not looked at.
 
         Raises:
-            SimulationError: the pilot run has no accepted trial to start from, or there are too many assumptions.
+            SimulationError: the pilot run has no accepted trial to start from, there are too many assumptions, or the
+                search takes too long.
         """
         started = time.perf_counter()
         if len(model.live) > _MOST:
@@ -171,6 +181,7 @@ class Optimised:
             message = f"the filters accept none of {count_text(_PILOT)} trials, so the search has nothing to start from"
             raise SimulationError(message, hint="see whether the filters contradict the assumptions")
         search = _Search(model, box_of(model, seed), np.column_stack([pilot.inputs[a.name] for a in model.live]))
+        search.deadline = started + self.seconds
         answers, ends = search.answers(pilot.forecasts)
         evaluations = _PILOT + search.points
         return MethodResult(
@@ -223,14 +234,18 @@ def _outside(bounds: Mapping[str, tuple[float, float]], extremes: Iterable[Extre
 
 
 class _Search:
-    """The optimisations of one run. Points are counted in widths of the box, so that all assumptions weigh alike."""
+    """The optimisations of one run. Points are counted in widths of the box, so that all assumptions weigh alike.
+
+    Attributes:
+        deadline: the time of the clock from which on no more points are evaluated.
+    """
 
     def __init__(self, model: CompiledModel, box: Box, accepted: Floats) -> None:
         self._model, self._box, self._accepted = model, box, accepted
         self._evaluate = Evaluation(model)
         self._names = [a.name for a in model.live]
         self._low, self._width = box.low, np.where(box.width > 0.0, box.width, 1.0)
-        self._derived = 0
+        self._derived, self.deadline = 0, np.inf
         self._one_at_a_time = threading.Lock()
         self._filters = {f.name: [(sense, _number(model, at)) for sense, at in filter_limits(f)] for f in model.filters}
 
@@ -334,7 +349,13 @@ class _Search:
         ]
 
     def _derivatives(self, points: list[Floats]) -> list[_Point]:
-        """Values and slopes at points of as many searches."""
+        """Values and slopes at points of as many searches.
+
+        Raises:
+            SimulationError: the time is over.
+        """
+        if time.perf_counter() > self.deadline:
+            raise SimulationError("the search took longer than the study has for it")
         at = self._low + np.array(points) * self._width
         result = derivatives(self._model, dict(zip(self._names, at.T, strict=True)))
         self._derived += len(points)

@@ -6,16 +6,19 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from statistics import median
+from time import perf_counter
 from typing import Any, Final
 
 import numpy as np
 
-from xlmc.analysis.studies.methods.answer import STATISTICS, Answer, Extreme, Method, MethodResult
+from xlmc.analysis.studies.methods.answer import STATISTICS, Answer, Extreme, Method, MethodResult, seconds_text
 from xlmc.analysis.studies.methods.converged_reference import (
+    FIRST,
+    PROBE,
     Reference,
     fastest_engine,
+    probe_of,
     reference_of,
-    reference_size,
     unfiltered_of,
 )
 from xlmc.analysis.studies.methods.corners import Corners
@@ -28,13 +31,14 @@ from xlmc.analysis.studies.methods.surrogate import Surrogate
 from xlmc.analysis.studies.shown import Shown
 from xlmc.analysis.studies.steps import Steps, Tell
 from xlmc.errors import FormulaError, SimulationError
-from xlmc.montecarlo.definitions.amounts import as_tolerance
+from xlmc.montecarlo.definitions.amounts import as_seconds, as_tolerance
 from xlmc.montecarlo.definitions.forms import span_text
 from xlmc.montecarlo.definitions.stating import Kind
 from xlmc.montecarlo.model.model import CompiledModel
+from xlmc.montecarlo.model.plain_words import duration
 from xlmc.montecarlo.number_text import count_text, number_text
 
-__all__ = ["ACCURACY", "LENGTHS", "REPLICATES", "STEP", "Study", "ladder_of", "quick_settings", "study"]
+__all__ = ["ACCURACY", "LENGTHS", "MANY", "REPLICATES", "STEP", "Study", "ladder_of", "quick_settings", "study"]
 
 ACCURACY: Final = "1%"
 REPLICATES: Final = 24
@@ -53,6 +57,23 @@ _FEWEST_ACCEPTED: Final = 4.0
 ONCE: Final[tuple[Method, ...]] = (Corners(), Optimised(), WorstCase(), FirstOrder(), SecondOrder())
 DRAWN: Final[tuple[Method, ...]] = (*SAMPLERS, ImportanceGrid(), Surrogate())
 
+MANY: Final = 20
+"""With more assumptions than these there is a limit of time, if none is given: some methods cost the square of their
+number, and more."""
+
+_LIMIT, _QUICK_LIMIT = 60.0, 30.0
+"""Seconds of a study of many assumptions, and of a quick one."""
+
+_REFERENCE_SHARE, _ONCE_SHARE, _METHOD_SHARE, _SLOW_SHARE = 0.1, 0.1, 0.2, 0.2
+"""Of the limit of time: for the reference, for a method that gives one answer, for six runs of one that draws, and what
+must be left for the slow engine."""
+
+_LIMITED_LENGTHS: Final = 4
+"""Run lengths where the time is limited: of many assumptions all short runs take the same time."""
+
+_PER_LIMIT: Final = 50
+"""The limit of time over the longest run by Monte Carlo."""
+
 _REFERENCE_SECONDS: Final = 8.0
 _LONGEST_RUN: Final = 2.5
 """Seconds of a run by Monte Carlo: longer ones are not measured."""
@@ -69,6 +90,9 @@ each takes longer than all should.
 
 _LEAST_TOLD: Final = 2
 """Runs of each length, without which there is no error to tell."""
+
+_INTERRUPTED: Final = "the study was interrupted before it"
+_MORE_TIME: Final = "give a longer time with --time-limit"
 
 _FEWEST_LENGTHS: Final = 3
 """Run lengths, without which there is no slope to tell."""
@@ -154,13 +178,16 @@ def study(
     trials: int | None = None,
     replicates: int | None = None,
     patience: float | None = None,
+    time_limit: str | float | None = None,
     seed: int | None = None,
     tell: Tell | None = None,
+    plan: Tell | None = None,
 ) -> Study:
     """Measure every method on a workbook.
 
-    Once the reference was run, a first Ctrl-C ends it with what was run by then (`Study.ended`), but not before the
-    three shortest run lengths were run twice.
+    As soon as a first short run says how fast the workbook is, a first Ctrl-C ends it with what was run by then
+    (`Study.ended`): that run is the reference where no longer one was made, and the three shortest lengths are run
+    twice by Monte Carlo if they were not.
 
     Args:
         model: the workbook.
@@ -171,8 +198,11 @@ def study(
         replicates: runs of each length, 2 or more; by default 24, or as many as take a method four seconds, 6 at least.
         patience: seconds after which one method is not run again at one length, after six runs at least, or three where
             each takes longer than that; by default four, or as long as it takes where `replicates` is given.
+        time_limit: of the whole study, about: `60s`, `5m`, or seconds. Methods that take too much of it are left out,
+            and named. By default a minute with more than 20 assumptions, if no number of trials or runs is given.
         seed: of the reference; by default the workbook's.
         tell: called with what is being measured, how many steps are left, and how long they may take.
+        plan: called with what will be measured, and how long that takes at most.
 
     Raises:
         SimulationError: an argument is out of its range, or the reference accepts too few trials.
@@ -182,8 +212,11 @@ def study(
     model = _without_texts(model)
     own = model.definitions.settings.seed if seed is None else seed
     _check(own, replicates, trials, reference_trials, model)
-    with Steps(tell) as steps:
-        return _measured(model, wanted, texts, own, reference_trials, trials, replicates, patience, steps)
+    limit = None if time_limit is None else as_seconds(time_limit)
+    if limit is None and len(model.live) > MANY and not (reference_trials or trials or replicates):
+        limit = _LIMIT
+    with Steps(tell, plan=plan) as steps:
+        return _measured(model, wanted, texts, own, reference_trials, trials, replicates, patience, limit, steps)
 
 
 def _measured(
@@ -195,26 +228,49 @@ def _measured(
     trials: int | None,
     replicates: int | None,
     patience: float | None,
+    limit: float | None,
     steps: Steps,
 ) -> Study:
-    engine, most = fastest_engine(model), replicates or REPLICATES
+    began = perf_counter()
+    steps.latest = began + (limit or np.inf)
+    engine, most = "numpy", replicates or REPLICATES
     steps.begin("how fast the workbook is")
-    size, sampling = reference_size(model, engine, own, _REFERENCE_SECONDS)
-    size = reference_trials or size
-    steps.begin(f"the reference, {count_text(size)} trials")
-    reference = reference_of(model, size, sampling, engine, own)
-    unfiltered = unfiltered_of(model, reference)
-    ladder = ladder_of(model, trials, own, reference.acceptance.value)
+    probe = probe_of(model, engine, own, FIRST)
+    if probe.reference is not None:
+        steps.can_end()
+    with steps.left_at_once():
+        engine = fastest_engine(model)
+        probe_of(model, engine, own, FIRST)
+        probe = probe_of(model, engine, own, PROBE)
+    if probe.reference is not None:
+        steps.can_end()
+    size = reference_trials or probe.trials_in(min(_REFERENCE_SECONDS, _REFERENCE_SHARE * (limit or np.inf)))
     if patience is None:
         patience = _RUNS_SECONDS if replicates is None else np.inf
-    measuring = _Measuring(model, reference, ladder, most, patience, own, steps)
+    reference = probe.reference
+    if not steps.ended:
+        steps.say_plan(*_plan(model, size, most, patience, limit))
+        with steps.left_at_once():
+            steps.begin(f"the reference, {count_text(size)} trials")
+            reference = reference_of(model, size, probe.sampling, engine, own)
+    assert reference is not None  # or else Ctrl-C ended it all
+    unfiltered = None
+    if not steps.ended:
+        with steps.left_at_once():
+            unfiltered = unfiltered_of(model, reference)
+    longest = _LONGEST_RUN if limit is None else min(_LONGEST_RUN, limit / _PER_LIMIT)
+    ladder = ladder_of(model, trials, own, reference.acceptance.value, longest, steps)
+    if limit is not None and trials is None:
+        ladder = ladder[-_LIMITED_LENGTHS:]
+    left = None if limit is None else max(limit - (perf_counter() - began), 0.0)
+    measuring = _Measuring(model, reference, ladder, most, patience, own, steps, limit, left)
     steps.can_end()
     once = measuring.once(ONCE)
     result = measuring.run_drawn(DRAWN, [each for each in ENGINE_VARIANTS if each.engine != SLOW])
     curves = tuple(curve for curve in result if curve.method in DRAWN)
     engines = tuple(curve for curve in result if curve.method not in DRAWN)
-    if not steps.ended:
-        once = tuple(measuring.widen(curve) if curve.ends else curve for curve in once)
+    with steps.left_at_once():
+        once = tuple(measuring.widen(curve) if curve.ends and not steps.ended else curve for curve in once)
     for variant in steps.each(ENGINE_VARIANTS):
         if variant.engine == SLOW:
             engines += measuring.time_slow(variant, next(curve for curve in curves if curve.method is MONTE_CARLO))
@@ -222,6 +278,19 @@ def _measured(
         model, own, wanted, reference, unfiltered, measuring.ladder, most, once, curves, engines, measuring.absent,
         texts, steps.why_ended,
     )  # fmt: skip
+
+
+def _plan(model: CompiledModel, size: int, most: int, patience: float, limit: float | None) -> tuple[str, float]:
+    """Say what will be measured, and how many seconds that may take."""
+    count = len(ONCE) + len(DRAWN) + len(ENGINE_VARIANTS)
+    what = (
+        f"Measures {count} methods on {count_text(len(model.live))} assumptions and {count_text(len(model.forecasts))} "
+        f"forecasts: a reference of {count_text(size)} trials, then up to {most} runs of each method that draws and of "
+        f"each of up to {LENGTHS} lengths"
+    )
+    if limit is None:
+        return what, 2.0 * _REFERENCE_SECONDS + min(patience, most) * LENGTHS * len(DRAWN)
+    return f"{what}; a method that takes too long is left out, but for a larger --time-limit", limit
 
 
 def _without_texts(model: CompiledModel) -> CompiledModel:
@@ -241,28 +310,35 @@ def _without_texts(model: CompiledModel) -> CompiledModel:
     return model.changed(model.workbook, replace(model.definitions, forecasts=kept, forecast_filters=own))
 
 
-def quick_settings(given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the arguments that `--quick` gives to `study` beside the given ones: few and short runs."""
+def quick_settings(model: CompiledModel, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the arguments that `--quick` gives to `study` beside the given ones: few and short runs, or of many
+    assumptions as many as half a minute allows.
+    """
+    if len(model.live) > MANY and not given:
+        return {"time_limit": _QUICK_LIMIT}
     usual = {"reference_trials": 1 << 20, "trials": 1 << 17, **given}
     return usual if "replicates" in given else {**usual, "replicates": 8, "patience": 0.5}
 
 
-def ladder_of(model: CompiledModel, most: int | None, seed: int, acceptance: float) -> tuple[int, ...]:
+def ladder_of(
+    model: CompiledModel, most: int | None, seed: int, acceptance: float, longest: float, steps: Steps
+) -> tuple[int, ...]:
     """Trials of the runs, the fewest first: three lengths at least.
 
     The shortest have about four accepted trials, or 128 trials. Where `most` is not given, the longest have 16,384
-    times as many, or as many as Monte Carlo computes in two and a half seconds.
+    times as many, or as many as Monte Carlo computes in `longest` seconds.
     """
     shortest = max(_SHORTEST, 1 << math.ceil(math.log2(_FEWEST_ACCEPTED / max(acceptance, 1e-9))))
     if most is not None:
         lengths = [most // STEP**k for k in range(LENGTHS) if k < 3 or most // STEP**k >= shortest]
         return tuple(dict.fromkeys(max(each, 16) for each in reversed(lengths)))
     result = [shortest, shortest * STEP, shortest * STEP**2]
-    while len(result) < LENGTHS:
-        seconds = min(MONTE_CARLO.run(model, result[-1], seed).seconds for _ in range(2))
-        if seconds * STEP > _LONGEST_RUN:
-            break
-        result.append(result[-1] * STEP)
+    with steps.left_at_once():
+        while len(result) < LENGTHS and not steps.ended:
+            seconds = min(MONTE_CARLO.run(model, result[-1], seed).seconds for _ in range(2))
+            if seconds * STEP > longest:
+                break
+            result.append(result[-1] * STEP)
     return tuple(result)
 
 
@@ -308,31 +384,56 @@ class _Measuring:
         patience: float,
         seed: int,
         steps: Steps,
+        limit: float | None,
+        left: float | None,
     ) -> None:
         self._model, self._reference, self.ladder = model, reference, ladder
+        self._limit = np.inf if limit is None else limit
+        self._deadline = np.inf if left is None else perf_counter() + left
         self._replicates, self._patience = replicates, patience
         self._seed, self._steps = seed, steps
         self._extremes: dict[str, dict[str, Extreme]] = {}
         self.absent: dict[str, str] = {}
 
+    @property
+    def _left(self) -> float:
+        """Seconds that are left of the limit."""
+        return max(self._deadline - perf_counter(), 0.0)
+
+    @property
+    def _over(self) -> bool:
+        """Whether no run is to begin that can be done without: Ctrl-C was pressed, or the time is over."""
+        return self._steps.ended or not self._left > 0.0
+
     def once(self, methods: Sequence[Method]) -> tuple[Curve, ...]:
         """Run the methods that give one answer; twice, so that the second run shows what they cost."""
         curves = []
         for method in methods:
-            if self._steps.ended:
-                self.absent[method.name] = "the study was interrupted before it"
+            if self._over:
+                self.absent[method.name] = self._why_not
                 continue
             self._steps.begin(method.name)
-            first = self._try(method, self.ladder[-1])
+            limited = replace(method, seconds=_ONCE_SHARE * self._limit) if isinstance(method, Optimised) else method
+            first = self._try(limited, self.ladder[-1])
             if first is None:
                 continue
-            again = method.run(self._model, self.ladder[-1], self._seed) if first.seconds < _PATIENCE else first
+            again = first
+            with self._steps.left_at_once():
+                again = method.run(self._model, self.ladder[-1], self._seed) if first.seconds < _PATIENCE else first
             result = replace(again, seconds=min(first.seconds, again.seconds))
             runs = runs_of(result.evaluations, [result], self._reference)
             ranges = {name: (a.least, a.most) for name, a in result.answers.items() if np.isfinite(a.least)}
             setup = max(0.0, first.seconds - again.seconds)
             curves.append(Curve(method, (runs,), setup, result.remarks, ranges, ends=result.ends))
         return tuple(curves)
+
+    @property
+    def _why_not(self) -> str:
+        return _INTERRUPTED if self._steps.ended else f"the {self._allowed} did not suffice for it; {_MORE_TIME}"
+
+    @property
+    def _allowed(self) -> str:
+        return f"{duration(self._limit)} of the study"
 
     def widen(self, curve: Curve) -> Curve:
         """Bounds by optimisation, no narrower than what any run has drawn."""
@@ -354,30 +455,99 @@ class _Measuring:
 
         They take turns, run length after run length, so that other work of the machine slows all of them alike.
         """
-        firsts = {method.key: self._try(method, self.ladder[0]) for method in (*methods, *engines)}
-        able = [method for method in (*methods, *engines) if firsts[method.key] is not None]
+        firsts, able = self._firsts((*methods, *engines))
         results: dict[tuple[str, int], list[MethodResult]] = {(m.key, b): [] for m in able for b in self.ladder}
+        if np.isfinite(self._limit):
+            self._patience = min(self._patience, self._left / len(results))
         self._steps.expect(self._replicates + 1)  # and the slow engine
         for replicate in range(self._replicates):
-            needed = replicate < _LEAST_TOLD
-            if self._steps.ended and not needed:
+            if self._over and replicate >= _LEAST_TOLD:
                 break
             self._steps.begin(
                 f"runs of {count_text(self.ladder[0])} to {count_text(self.ladder[-1])} trials, "
                 f"{replicate + 1} of {self._replicates}"
             )
-            for number, budget in enumerate(self.ladder):
-                if needed and number >= _FEWEST_LENGTHS and self._steps.ended:
-                    self.ladder = self.ladder[:number]
-                    break
-                seed = self._seed + 1 + number * _APART + replicate
-                for method in able:
-                    known = results[method.key, budget]
-                    if not self._enough(known, method in engines):
-                        known.append(self._run(method, budget, seed))
+            with self._steps.left_at_once():
+                self._run_all(able, engines, results, replicate)
+        self._complete(results)
+        self._keep_complete(able, results)
+        able = [method for method in able if (method.key, self.ladder[0]) in results]
         result = {m.key: self._curve(m, firsts[m.key], results) for m in able if m not in engines}
         same = [self._engine_curve(e, firsts[e.key], results, result[MONTE_CARLO.key]) for e in engines if e in able]
         return (*result.values(), *same)
+
+    def _firsts(self, methods: Sequence[Method]) -> tuple[dict[str, MethodResult | None], list[Method]]:
+        """Run each method for the first time: key -> what that gave, and the methods that are to be run on.
+
+        Of these is Monte Carlo in any case.
+        """
+        firsts: dict[str, MethodResult | None] = {}
+        able: list[Method] = []
+        for method in methods:
+            if self._over and method is not MONTE_CARLO:
+                self.absent[method.name] = self._why_not
+                continue
+            self._steps.begin(f"{method.name}, a first run")
+            first = firsts[method.key] = self._try(method, self.ladder[0])
+            usual = first
+            if first is not None and 1.0 < self._slowness(first) < _LEAST_TOLD * _FEWEST_LENGTHS / 2.0:
+                usual = self._try(method, self.ladder[0])  # the first may have compiled or learned something
+            if first is not None and usual is not None and self._slowness(usual) > 1.0 and method is not MONTE_CARLO:
+                self.absent[method.name] = (
+                    f"one run of {count_text(self.ladder[0])} trials took {seconds_text(usual.seconds)}, too much of "
+                    f"the {self._allowed}; {_MORE_TIME}"
+                )
+            elif first is not None or method is MONTE_CARLO:
+                self.absent.pop(method.name, None)
+                able.append(method)
+        return firsts, able
+
+    def _slowness(self, result: MethodResult) -> float:
+        """Return how many times what the limit has for a method the runs that are needed would take."""
+        return result.seconds * _LEAST_TOLD * _FEWEST_LENGTHS / (_METHOD_SHARE * self._limit)
+
+    def _run_all(
+        self,
+        able: Sequence[Method],
+        engines: Sequence[Method],
+        results: Mapping[tuple[str, int], list[MethodResult]],
+        replicate: int,
+    ) -> None:
+        """Run every method once at every length, as far as there is time."""
+        for number, budget in enumerate(self.ladder):
+            for method in able:
+                if self._over:
+                    return
+                known = results[method.key, budget]
+                if not self._enough(known, method in engines):
+                    known.append(self._run(method, budget, self._seed_of(number, replicate)))
+
+    def _seed_of(self, number: int, replicate: int) -> int:
+        """Return the seed of one run of the length of this number."""
+        return self._seed + 1 + number * _APART + replicate
+
+    def _complete(self, results: Mapping[tuple[str, int], list[MethodResult]]) -> None:
+        """Run Monte Carlo as often as any answer needs, if it was not."""
+        for number, budget in enumerate(self.ladder[:_FEWEST_LENGTHS]):
+            known = results[MONTE_CARLO.key, budget]
+            while len(known) < _LEAST_TOLD:
+                known.append(self._run(MONTE_CARLO, budget, self._seed_of(number, len(known))))
+
+    def _keep_complete(self, able: Sequence[Method], results: dict[tuple[str, int], list[MethodResult]]) -> None:
+        """Leave out the methods that were not run twice at the three shortest lengths, then the lengths that not every
+        other method was run at.
+        """
+
+        def ran(method: Method) -> int:
+            return next((n for n, b in enumerate(self.ladder) if len(results[method.key, b]) < _LEAST_TOLD), LENGTHS)
+
+        for method in able:
+            if ran(method) < _FEWEST_LENGTHS:
+                self.absent[method.name] = self._why_not
+                for budget in self.ladder:
+                    del results[method.key, budget]
+        kept = [method for method in able if (method.key, self.ladder[0]) in results]
+        self.ladder = self.ladder[: min(map(ran, kept))]
 
     def _enough(self, known: Sequence[MethodResult], engine: bool) -> bool:
         """Whether there are enough runs of one method and length: as many as wanted, or as their time allows."""
@@ -385,6 +555,8 @@ class _Measuring:
             return True
         spent = sum(result.seconds for result in known)
         least = _LEAST_RUNS if spent <= len(known) * self._patience else _LEAST_OF_SLOW
+        if np.isfinite(self._limit):
+            least = _LEAST_TOLD
         return len(known) >= least and spent > self._patience
 
     def _run(self, method: Method, budget: int, seed: int) -> MethodResult:
@@ -433,11 +605,16 @@ class _Measuring:
 
     def time_slow(self, engine: Sampled, numpy: Curve) -> tuple[Curve, ...]:
         """Time an engine that is too slow for runs of any length: its time is worked out from a few trials."""
+        if np.isfinite(self._limit) and self._left < _SLOW_SHARE * self._limit:
+            self.absent[engine.name] = self._why_not
+            return ()
         self._steps.begin(engine.name)
         first = self._try(engine, _FEW)
         if first is None:
             return ()
-        again = engine.run(self._model, _FEW, self._seed).seconds
+        again = first.seconds
+        with self._steps.left_at_once():
+            again = engine.run(self._model, _FEW, self._seed).seconds
         each = again / _FEW
         lengths = tuple(
             replace(r, seconds=each * r.budget, usual=each * r.budget, measured=False) for r in numpy.lengths
@@ -446,12 +623,15 @@ class _Measuring:
         return (Curve(engine, lengths, max(0.0, first.seconds - again), (remark,), {}),)
 
     def _try(self, method: Method, budget: int) -> MethodResult | None:
-        """Run a method for the first time; None, and why, where it cannot be used."""
+        """Run a method for the first time; None, and why, where it cannot be used, or was interrupted."""
         try:
-            return method.run(self._model, budget, self._seed)
+            with self._steps.left_at_once():
+                return method.run(self._model, budget, self._seed)
         except (SimulationError, FormulaError) as error:
             self.absent[method.name] = str(error)
-            return None
+        else:
+            self.absent[method.name] = _INTERRUPTED
+        return None
 
     def _apart(self, results: Sequence[MethodResult], numpy: Sequence[MethodResult]) -> float:
         """How far an engine's answers are from those of `numpy` at the same trials, in standard deviations."""

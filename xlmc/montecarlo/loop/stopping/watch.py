@@ -100,12 +100,14 @@ class Interruption:
     Attributes:
         asked: whether the run is to end.
         keeping: whether there is something to keep; to be set by whoever has it.
+        at_once: whether the first is a `KeyboardInterrupt` too, of whose raiser `left` says that it was the first.
+        left: whether the first was raised, and not taken notice of yet.
     """
 
     def __init__(self, *, wanted: bool) -> None:
         self._wanted = wanted
         self._before: Any = None
-        self.asked = self.keeping = False
+        self.asked = self.keeping = self.at_once = self.left = False
 
     def __enter__(self) -> Interruption:
         usual = self._wanted and threading.current_thread() is threading.main_thread()
@@ -123,6 +125,9 @@ class Interruption:
         if self.asked or not self.keeping:
             raise KeyboardInterrupt
         self.asked = True
+        if self.at_once:
+            self.left = True
+            raise KeyboardInterrupt
 
 
 def chosen_rule(asked: Stopping, forecasts: Sequence[Forecast], texts: Collection[int] = ()) -> StopRule | None:

@@ -16,6 +16,7 @@ from xlmc.engine.llvm.loop import compile_loop
 from xlmc.engine.llvm.operations import loop_rule_of
 from xlmc.engine.llvm.program import JitProgram
 from xlmc.errors import ErrorCode
+from xlmc.excel.functions.operators import ALL_BITS
 
 A = np.array([-7.5, -2.0, -1.0, -0.25, 0.0, 0.5, 1.0, 3.0, 1e6, 2.0**27, 1e-295, 4.000000000000001])
 B = np.array([2.0, -0.5, 1.0, 0.0, 0.0, 2.0, -3.0, 3.0, 7.0, 4.0, 1e-295, 4.0])
@@ -192,6 +193,14 @@ def rule_of(lower, formula):
 )  # fmt: skip
 def test_what_has_a_rule(lower, formula, has_one):
     assert (rule_of(lower, formula) is not None) == has_one
+
+
+@pytest.mark.parametrize("relation", ALL_BITS)
+def test_comparisons_of_all_bits_have_a_rule(lower, relation):
+    """Those of a filter's limits: without a rule, no model with such a filter is run in whole blocks."""
+    lowering, (target,) = lower({"A1": 0.0, "Z1": "=A1+1"}, ["A1"], ["Z1"])
+    node = lowering.apply(ALL_BITS[relation], (lowering.target(target), lowering.number(1.0)))
+    assert loop_rule_of(lowering.dag, node) is not None
 
 
 def test_what_nothing_finite_makes_infinite(lower):

@@ -164,6 +164,13 @@ def _quotient(body: Emitter, parts: Sequence[Any]) -> Any:
     return value
 
 
+def _comparison(relation: str) -> _Row:
+    def emit(body: Emitter, parts: Sequence[Any]) -> Any:
+        return body.builder.fcmp_ordered(relation, *parts)
+
+    return _Row(emit, _ALL)
+
+
 def _fixed_answer(answer: bool) -> _Row:
     """Answer a question about a value's kind, which has one answer: a trial with an error is computed again."""
     return _Row(lambda body, parts: body.truth(answer), _ALL, kinds=PLAIN)
@@ -380,6 +387,12 @@ _ROWS: Final[Mapping[str, _Row]] = {
     "/": _Row(_quotient, (1,)),
     "u-": _Row(lambda body, parts: body.builder.fneg(parts[0]), makes=False),
     "%": _Row(lambda body, parts: _quotient(body, (parts[0], body.number(100.0)))),
+    "=": _comparison("=="),
+    "<>": _comparison("!="),
+    "<": _comparison("<"),
+    "<=": _comparison("<="),
+    ">": _comparison(">"),
+    ">=": _comparison(">="),
     SNAP_TO_ZERO.name: _Row(_last_sum, makes=False),
     "NOT": _Row(lambda body, parts: body.builder.not_(parts[0])),
     "ABS": _Row(lambda body, parts: body.intrinsic("llvm.fabs", parts[0]), makes=False),

@@ -34,6 +34,7 @@ from xlmc.excel.functions.registry import Anything, Cells
 from xlmc.excel.functions.values import BLANK, ShapeVaries, Value, constant
 
 __all__ = [
+    "LARGEST",
     "MOST_OUTCOMES",
     "NodeBuilder",
     "beside",
@@ -51,7 +52,7 @@ __all__ = [
 MOST_OUTCOMES: Final = 256
 """The most combinations of outcomes of the choices in a function's arguments for which `share_out` still works."""
 
-_LARGEST: Final = 10_000
+LARGEST: Final = 10_000
 """Cells of a varying array that are made nodes of their own; a larger one is computed as a whole."""
 
 
@@ -179,9 +180,9 @@ def cell_by_cell(
     rows, columns = max(size[0] for size in sizes), max(size[1] for size in sizes)
     fit = all(size[0] in (1, rows) and size[1] in (1, columns) for size in sizes)
     constant_ = all(isinstance(dag.nodes[node], Constant) for node in nodes)
-    if constants and rows * columns > _LARGEST:
+    if constants and rows * columns > LARGEST:
         raise FormulaError(f"{rows * columns:,} cells would each make an array", hint="give a single number for them")
-    if fit and ((constant_ and not constants) or rows * columns > _LARGEST):
+    if fit and ((constant_ and not constants) or rows * columns > LARGEST):
         return None
     return grid(dag, rows, columns, lambda r, c: apply(tuple(element(dag, node, r, c) for node in nodes)))
 

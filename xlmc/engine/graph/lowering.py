@@ -18,6 +18,7 @@ from xlmc.engine.graph.called_functions import check_count, not_computed, unknow
 from xlmc.engine.graph.choices import CHOICES, lower_reference
 from xlmc.engine.graph.circles import CircleError, Iterates, lower_as_read
 from xlmc.engine.graph.computed_references import NoReference, NotYetNeeded, areas_of, of_one_cell
+from xlmc.engine.graph.constant_sums import SUMS
 from xlmc.engine.graph.fill_down import FillDownCache
 from xlmc.engine.graph.further_cells import refusal
 from xlmc.engine.graph.graph import MANY, Dag
@@ -596,8 +597,8 @@ class Lowering(TreeLowering):
         return nodes if parameter.repeat else [self._stack(nodes)]
 
     def _special(self, name: str, arguments: tuple[ir.Expression, ...], scope: Scope) -> int | None:
-        """Lower a function that takes more than values; None of a function that takes values alone."""
-        for special in (CHOICES, REFERENCE_FUNCTIONS, lambdas.LAMBDAS, WRITTEN_OUT):
+        """Lower a function that takes more than values, or that is lowered as others are; None of any other call."""
+        for special in (CHOICES, REFERENCE_FUNCTIONS, lambdas.LAMBDAS, WRITTEN_OUT, SUMS):
             if name in special:
                 try:
                     return special[name](self, arguments, scope)

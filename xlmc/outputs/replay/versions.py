@@ -258,6 +258,11 @@ RULES: Final = (
     Rule("0.12.0", "adjustment weights of matrices of rank correlations are honoured", _calls("RiskCorrmat")),
     Rule("0.12.0", "an answer made of tests, 1 and 0 is a yes/no answer where it never varies, too", _COMPARED),
     Rule("0.12.0", "of more than 100 assumptions, fewer draws before filtering are summarised", _ANY),
+    Rule(
+        "0.12.0",
+        "large arrays of constants in a sum of products are added up before the run, to other last bits",
+        _calls("SUM", "SUMPRODUCT"),
+    ),
 )
 """The rules in the order of versions."""
 

@@ -143,8 +143,7 @@ class NativeBlockRunner:
             [*_aligned_rows(len(parts.forecasts), block)],
         )
         self._wrong = np.zeros((2, self._chunk), np.uint8)
-        f, rejecting = len(self._rejecting), [*self._rejecting]
-        self._among_filters = np.ix_(rejecting, rejecting) if f else None
+        f = len(self._rejecting)
         self._counts = np.zeros(f * (f + 1) // 2 + f, np.int64)
         rows_of, columns_of = np.maximum(*np.indices((f, f))), np.minimum(*np.indices((f, f)))
         self._pairs = rows_of * (rows_of + 1) // 2 + columns_of
@@ -234,9 +233,11 @@ class NativeBlockRunner:
         parts = self._parts
         accepted = self._accepted if block_memory.accepted is None else block_memory.accepted
         f = len(parts.filters)
-        together, only = np.zeros((f, f), np.int64), np.zeros(f, np.int64)
-        if self._among_filters is not None:
-            together[self._among_filters], only[[*self._rejecting]] = pairs, alone
+        together, only = pairs, alone
+        if len(self._rejecting) < f:
+            rejecting = np.array([*self._rejecting], np.intp)
+            together, only = np.zeros((f, f), np.int64), np.zeros(f, np.int64)
+            together[np.ix_(rejecting, rejecting)], only[rejecting] = pairs, alone
         return AcceptedBlock(
             np.add(self._trials[:m], start, out=accepted[:m]),
             {name: block_memory.draws[name][:m] for name in self._names} if inputs else {},

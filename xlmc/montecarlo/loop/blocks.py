@@ -7,9 +7,9 @@ depend on the other trials.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, NamedTuple, Protocol
+from typing import Any, NamedTuple, Protocol, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,10 +31,11 @@ from xlmc.errors import ErrorCode
 from xlmc.montecarlo.interruption import checkpoint
 from xlmc.montecarlo.loop.categories import labelled
 
-__all__ = ["Block", "FilterTally", "ModelRunner", "Portable", "Runner", "Task", "fault_text", "portions"]
+__all__ = ["Block", "FilterTally", "ModelRunner", "Portable", "Runner", "Task", "add_counts", "fault_text", "portions"]
 
 Bools = NDArray[np.bool_]
 Floats = NDArray[np.float64]
+Key = TypeVar("Key")
 
 
 @dataclass(slots=True)
@@ -61,8 +62,7 @@ class FilterTally:
         self.only += other.only
         self.together += other.together
         self.by_error += other.by_error
-        for mine, theirs in zip(self.errors, other.errors, strict=True):
-            mine.update(theirs)
+        add_counts(self.errors, other.errors)
 
     @classmethod
     def empty(cls, filters: int) -> FilterTally:
@@ -70,6 +70,13 @@ class FilterTally:
         zeros = np.zeros(filters, np.int64)
         square = np.zeros((filters, filters), np.int64)
         return cls(zeros, zeros.copy(), square, [Counter() for _ in range(filters)], 0)
+
+
+def add_counts(counts: Iterable[Counter[Key]], more: Iterable[Counter[Key]]) -> None:
+    """Add the counts of a block; of most there are none, which takes `Counter.update` as long as some."""
+    for mine, theirs in zip(counts, more, strict=True):
+        if theirs:
+            mine.update(theirs)
 
 
 @dataclass(frozen=True, slots=True)

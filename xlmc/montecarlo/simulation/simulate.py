@@ -18,7 +18,7 @@ from xlmc.montecarlo.columns import ColumnStore
 from xlmc.montecarlo.definitions.run_options import RunOptions
 from xlmc.montecarlo.diagnostics.checking import LEAST_CHECKED
 from xlmc.montecarlo.diagnostics.weighing import choose_method, weighing
-from xlmc.montecarlo.loop.blocks import Block, FilterTally, ModelRunner, Task
+from xlmc.montecarlo.loop.blocks import Block, FilterTally, ModelRunner, Task, add_counts
 from xlmc.montecarlo.loop.categories import Labels
 from xlmc.montecarlo.loop.disk_needed import disk_needed
 from xlmc.montecarlo.loop.scheduling.run_spec import model_runner
@@ -280,11 +280,9 @@ class _Gathered:
     def add(self, block: Block) -> None:
         self._keep(block)
         self._tally.add(block.tally)
-        self._invalid.update(block.invalid)
-        for mine, theirs in zip(self._faults, block.faults, strict=True):
-            mine.update(theirs)
-        for discarded, more in zip(self._discards, block.discards, strict=False):
-            discarded.update(more)
+        add_counts((self._invalid, *self._faults), (block.invalid, *block.faults))
+        if block.discards:
+            add_counts(self._discards, block.discards)
         self.trials += block.trials
         self.accepted += block.accepted.size
         self.lost += block.lost

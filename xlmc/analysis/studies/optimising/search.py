@@ -125,8 +125,7 @@ def _evolve(tried: Tried, space: Space, first: Values | None, n: int, seed: int)
     rng = np.random.default_rng(np.random.SeedSequence([seed, k]))
 
     def energies(at: NDArray[np.float64]) -> NDArray[np.float64]:
-        columns = at if at.ndim > 1 else at[:, None]
-        candidates = [space.candidate(np.rint(column)) for column in columns.T]
+        candidates = [space.candidate(np.rint(column)) for column in at.T]
         tried.extend([each for each in candidates if space.allows(each)], n)
         return np.array([_energy(tried, space, each, n) for each in candidates])
 

@@ -301,3 +301,47 @@ def test_errors_among_the_cells_stay_errors(operands_of):
     result = differences(first_error, [Operand(value, jet)]).jet
     assert result.first[0, 0] == pytest.approx(2.0, rel=1e-9)
     assert np.isnan(result.first[0, 1])
+
+
+def _scaled(cells, by):
+    """One operand of cells, of which two assumptions move each: by a, and by b only the first, in other units."""
+    x = np.array(cells).reshape(1, 1, -1)
+    first = np.stack([np.ones_like(x), np.zeros_like(x)]) * by
+    first[1, 0, 0, 0] = 3.0 * by
+    return Operand(Value.of_numbers(x), Jet(x, (0, 1), first, np.zeros((2, 2, 1, 1, 1))))
+
+
+def test_other_units_of_the_assumptions():
+    """In units of a quarter, all first derivatives and their errors are four times as large, second ones 16 times."""
+    function = total(lambda cells: np.exp(cells / 5) + cells**3)
+    one, other = (differences(function, [_scaled([2.0, 3.0, 7.0], by)]).jet for by in (1.0, 4.0))
+    assert (other.first == 4.0 * one.first).all()
+    assert (other.error == 4.0 * one.error).all()
+    assert (other.second == 16.0 * one.second).all()
+    assert (other.second_error == 16.0 * one.second_error).all()
+    first = [sum(math.exp(x / 5) / 5 + 3 * x * x for x in (2, 3, 7)), 3 * (math.exp(0.4) / 5 + 12)]
+    assert one.first[:, 0] == pytest.approx(first, rel=1e-9)
+    mixed = 3 * (math.exp(0.4) / 25 + 12)
+    assert one.second[0, 1, 0] == pytest.approx(mixed, rel=1e-5)
+    assert one.second[1, 1, 0] == pytest.approx(3 * mixed, rel=1e-5)
+    assert (one.error[:, 0] > 0).all()
+    assert (one.second_error[..., 0] > 0).all()
+
+
+def test_other_units_of_the_arguments(along):
+    """The same function of four times its arguments: derivatives and errors are a quarter and a sixteenth."""
+    one = along(lambda x, y: np.exp(x / y) + x * y, np.array([3.0, 5.0]), np.array([7.0, 2.0]))
+    other = along(lambda x, y: np.exp(x / y) + x * y / 16, np.array([12.0, 20.0]), np.array([28.0, 8.0]))
+    assert (other.first == one.first / 4).all()
+    assert (other.error == one.error / 4).all()
+    assert (other.second == one.second / 16).all()
+    assert (other.second_error == one.second_error / 16).all()
+    assert (one.error > 0).all()
+    assert (one.second_error > 0).all()
+
+
+def test_three_trials_of_a_text_that_stands_still():
+    texts = from_objects(np.array(["1", "2", "3"], object))
+    jet = Jet(np.zeros(3), (0,), np.zeros((1, 3)), np.zeros((1, 1, 3)))
+    outcome = by_differences(lambda values: values[0], texts, [Operand(texts, jet)])
+    assert outcome.jet.first.tolist() == [[0.0, 0.0, 0.0]]

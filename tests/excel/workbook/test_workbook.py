@@ -193,3 +193,13 @@ def test_the_cells_of_a_pivot_table():
 def test_cells_with_further_items(data, items, expected):
     found = pivot().cells_with(data, frozenset(items))
     assert {cell.a1 for cells in found for cell in cells} == expected
+
+
+def test_what_is_usual():
+    plain = Workbook("b", {})
+    flags = plain.date1904, plain.libreoffice, plain.macintosh, plain.may_be_stale
+    assert flags == (False,) * 4
+    shown = repr(Workbook("b", {}, parts={"a": b"bytes"}, origin={"a": b"bytes"}, data=b"bytes"))
+    assert "bytes" not in shown
+    assert (Sheet("S", "p", {}).visible, DataTable(AREA).two_inputs, DataTable(AREA).by_row) == (True, False, False)
+    assert not Formula("A1", 1, 1).dynamic

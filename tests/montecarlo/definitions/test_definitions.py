@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
 from xlmc.errors import ErrorCode
@@ -183,3 +185,29 @@ def test_a_coefficient_is_a_number_once_a_model_is_made():
 def test_rows_that_are_switched_off():
     made = Definitions((), (), (), (), switches={"off": (HERE, False), "on": (HERE, True)})
     assert [made.is_used(row) for row in ("off", "on", "none")] == [False, True, True]
+
+
+@pytest.mark.parametrize(
+    "made",
+    [
+        assumption({"mean": 5.0}), Forecast("y", B2, HERE), Filter("f", HERE, HERE), NUMBERS,
+        Solve("s", B2, 5.0, HERE, 0.0, C3, HERE),
+    ],
+    ids=lambda made: type(made).__name__,
+)  # fmt: skip
+def test_how_something_is_written_is_no_part_of_it(made):
+    """Forms, and what formulas were seen to give, are neither compared nor shown."""
+    others = {"form": MONEY, "form_by": MONEY, "stated": {"mean": StatedNumber(5.0, "=A1")}, "checked": "a draw"}
+    own = {key: value for key, value in others.items() if key in type(made).__dataclass_fields__}
+    for key, value in own.items():
+        other = replace(made, **{key: value})
+        assert other == made
+        assert repr(other) == repr(made)
+        assert f"{key}=" not in repr(made)
+    assert replace(made, name="another") != made
+
+
+def test_what_is_usual():
+    made = assumption({"mean": 5.0})
+    assert (made.frozen, made.uncertain, made.stream, made.base) == (False, False, "", None)
+    assert (NUMBERS.listed, NUMBERS.contents, NUMBERS.between) == (False, (), None)

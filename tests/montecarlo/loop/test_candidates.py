@@ -48,6 +48,8 @@ def test_candidates_share_their_draws(trials):
     assert draws.max() < 1.0
     assert abs(draws.mean() - 0.5) < 5 / np.sqrt(12 * 1000)
     assert len(np.unique(draws)) == 1000
+    assert rows(made.forecasts([(2.0, 1.0)], 900, 1000))[0].tolist() == first[900:].tolist()
+    assert made.computed == 3100
 
 
 @pytest.mark.parametrize(("cuts", "jobs"), [([0, 1000], 2), ([0, 600, 1000], 1), ([0, 64, 128, 300, 1000], 3)])
@@ -80,8 +82,17 @@ def test_decisions_that_cannot_be_inputs_are_typed(trials):
 
 
 def test_a_model_that_differs_by_more_than_its_input_is_typed(trials):
-    """`CELL("type")` and saved values: ISNUMBER of what is typed is as it is, but TEXT of it has its digits."""
+    """The mean of a distribution itself is worked out as the book is read, with the number that is typed then."""
+    made = trials({"B1": '=RiskOutput("y")+A1+RiskTheoMean(RiskUniform(0,D1))'})
+    assert made.by_typing
+    two, five, nine = rows(made.forecasts([(2.0,), (5.0,), (9.0,)], 0, 100))
+    assert five == pytest.approx(two + 1.5)
+    assert nine == pytest.approx(two + 3.5)
+
+
+def test_numbers_that_are_read_as_texts_are_inputs(trials):
     made = trials({"B1": '=RiskOutput("y")+A1+LEN(D1&"")'}, (Decision("d", D1, (2.0, 55.0, 999.0), D1),))
+    assert not made.by_typing
     one, two, three = rows(made.forecasts([(2.0,), (55.0,), (999.0,)], 0, 100))
     assert two == pytest.approx(one + 1)
     assert three == pytest.approx(one + 2)
@@ -95,8 +106,9 @@ def test_texts_are_typed_beside_numbers(trials):
     assert three == pytest.approx(30 * steel)
     assert both == pytest.approx(3 * steel)
     assert made.computed == 1200
-    again = rows(made.forecasts([(0.0, 1.0)], 0, 300))
-    assert again[0].tolist() == steel.tolist()
+    again = rows(made.forecasts([(0.0, 1.0)], 64, 300))
+    assert again[0].tolist() == steel[64:].tolist()
+    assert made.computed == 1200 + 236
 
 
 def test_what_is_not_possible_has_no_numbers(trials):

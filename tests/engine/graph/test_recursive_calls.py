@@ -151,3 +151,32 @@ def test_values_of_some_trials_are_joined():
 
 def test_a_constant_is_spread_over_trials():
     assert items(spread_trials(constant("x"), 3)) == ["x"] * 3
+
+
+def counted():
+    """c(n) = 1 + IF(n<=0, 0, c(n-1)): the IF is no last step; slots 1 and 2 are the constants 1 and 0."""
+    steps = {3: apply("<=", 0, 2), 4: apply("-", 0, 1), 5: SelfCall((4,)), 6: Select(3, 2, 5), 7: apply("+", 1, 6)}
+    return Body(1, 0, {1: constant(1.0), 2: constant(0.0)}, steps, 7, frozenset(), 10)
+
+
+def test_a_choice_within_a_larger_formula():
+    wrong = from_objects(np.array([2.0, ErrorCode.DIV0, 0.0, -1.0, 5.0], object))
+    assert items(call_lambda(counted(), wrong)) == [3.0, ErrorCode.DIV0, 1.0, 1.0, 6.0]
+    assert items(call_lambda(counted(), numbers(9, 10))) == [10.0, ErrorCode.NUM]
+
+
+def test_two_ways_into_the_next_round():
+    """w(n, sum) = IF(n<=0, sum, IF(ISEVEN(n), w(n-1, sum+10), w(n-1, sum+1))), in any order of trials."""
+    steps = {
+        5: apply("<=", 0, 2), 6: apply("-", 0, 3), 7: apply("+", 1, 4), 8: apply("+", 1, 3), 9: SelfCall((6, 7)),
+        10: SelfCall((6, 8)), 11: apply("ISEVEN", 0), 12: Select(11, 9, 10), 13: Select(5, 1, 12),
+    }  # fmt: skip
+    constants = {2: constant(0.0), 3: constant(1.0), 4: constant(10.0)}
+    body = Body(2, 0, constants, steps, 13, frozenset({9, 10, 12, 13}), 100)
+    result = call_lambda(body, numbers(4, 3, 0, 1, 6, 5), numbers(0, 100, 7, 0, 0, 0))
+    assert items(result) == [22.0, 112.0, 7.0, 1.0, 33.0, 23.0]
+
+
+def test_a_lambda_without_parameters():
+    result = call_lambda(Body(0, 0, {0: constant(5.0)}, {}, 0, frozenset(), 10))
+    assert (items(result), result.shape) == ([5.0], (1,))

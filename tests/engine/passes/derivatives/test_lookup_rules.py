@@ -171,10 +171,10 @@ def test_which_cells_take_branches(outcome_of):
 def test_a_constant_at_a_position(operands_of):
     """The number at a position that an assumption changes: 0, and none where the position has none."""
     (numbers,) = operands_of([CELLS], still=(0,))
-    position = Value.of_numbers(np.array([1.0, 3.0]))
-    jet = Jet(position.numbers, (0,), np.array([[0.0, np.nan]]), np.zeros((1, 1, 2)))
+    position = Value.of_numbers(np.array([1.0, 3.0, 2.0]))
+    jet = Jet(position.numbers, (0,), np.array([[0.0, np.nan, 0.0]]), np.zeros((1, 1, 3)))
     operands = [numbers, Operand(position, jet)]
     result = CELL_AT([each.value for each in operands])
     outcome = RULES[CELL_AT.name].apply(CELL_AT, result, operands)
-    assert outcome.jet.x.tolist() == [10.0, 40.0]
-    assert np.array_equal(outcome.jet.first, [[0.0, np.nan]], equal_nan=True)
+    assert outcome.jet.x.tolist() == [10.0, 40.0, 20.0]
+    assert np.array_equal(outcome.jet.first, [[0.0, np.nan, 0.0]], equal_nan=True)

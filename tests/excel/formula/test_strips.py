@@ -113,3 +113,32 @@ def test_needs_of_cells(strips):
     parts, links = needs.linked()
     assert len(parts) == 3
     assert links == {a: [0, 1], b: [0], c: [1, 2]}
+
+
+def test_what_varies(strips):
+    """Rows 1, 4, …, 100 of column 2 count; row 37 varies, and which part is constant is looked at once."""
+    looked = []
+
+    class Varying(set):
+        def __contains__(self, cell):
+            looked.append(cell.row)
+            return super().__contains__(cell)
+
+    varying = Varying({Cell("S", 37, 2)})
+    whole, upper, lower = (
+        next(strips.of(Area("S", *rows))) for rows in ((1, 2, 100, 2), (1, 2, 70, 2), (40, 2, 120, 2))
+    )
+    assert whole.varies(varying)
+    assert looked == list(range(1, 38, 3))
+    looked.clear()
+    assert upper.varies(varying)
+    assert looked == [37]
+    looked.clear()
+    assert not lower.varies(varying)
+    assert looked == list(range(40, 121, 3))
+    looked.clear()
+    assert not lower.varies(varying)
+    assert looked == []
+    lower.note_ordered()
+    assert list(lower.waiting()) == []
+    assert [cell.row for cell in whole.waiting()] == list(range(1, 40, 3))

@@ -32,9 +32,7 @@ class _Span:
 
     def outside(self, start: int, stop: int) -> tuple[range, range]:
         """Return the indices from `start` to before `stop` that are not known to have it."""
-        if self.stop <= start or stop <= self.start:
-            return range(start, stop), range(0)
-        return range(start, self.start), range(max(start, self.stop), stop)
+        return range(start, min(stop, self.start)), range(max(start, self.stop), stop)
 
     def add(self, start: int, stop: int) -> None:
         """Note that these have it too."""

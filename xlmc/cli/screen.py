@@ -64,7 +64,7 @@ def screen(
     changing its answers.
     """
     from xlmc.analysis.studies import screening
-    from xlmc.cli.progress_bar import step_line
+    from xlmc.cli.progress_bar import plan_note, step_line
     from xlmc.outputs.studies.screen import printed, screen_report
 
     model, files = output.open(book, functions, of_run=True)
@@ -79,6 +79,7 @@ def screen(
             ends=ends,
             **run,
             tell=tell,
+            plan=plan_note,
         )
     with finishing():
         report = screen_report(result)

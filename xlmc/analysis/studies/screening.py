@@ -7,7 +7,8 @@
 2. **Verified**, each by a run of its own with the assumption held and the same draws of all others. Correlated ones of
    which one at least is needed alone are also held in groups: two that cancel each other move an answer only apart.
    Of more than `ALONE` assumptions the cheapest are held at once first, as many as may be, found by halving; these are
-   not run alone.
+   not run alone. Of the others, those that reach no common forecast (`reach`) are held in one run, which says of each
+   what it costs alone.
 3. **Together**: the cheapest that are within the tolerance, as many as still are when held at once. The end is one run
    with all of them held; costs are not added up.
 4. **Filters**, in the same way, on top of it: left out one by one, then together. The cells that only they need are not
@@ -18,9 +19,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
 from math import log2
+from time import perf_counter
 from typing import Final, TypedDict
 
 import numpy as np
@@ -39,6 +42,7 @@ from xlmc.analysis.studies.comparison.tolerances import (
     read_tolerances,
 )
 from xlmc.analysis.studies.comparison.variations import names_of_rows, with_changes, with_plain_sampling
+from xlmc.analysis.studies.reach import apart, reach_of
 from xlmc.analysis.studies.shown import Shown
 from xlmc.analysis.studies.steps import Steps, Tell
 from xlmc.errors import SimulationError
@@ -84,6 +88,9 @@ _FEWEST: Final = 2
 ALONE: Final = 20
 """With more assumptions than this, the cheapest are held at once before the others are held one by one."""
 
+_RUNS_OF_COMPARING: Final = 3.0
+"""Runs whose time a further run takes with the comparison of its answers, about."""
+
 Floats = NDArray[np.float64]
 
 
@@ -100,6 +107,7 @@ class ScreenArguments(TypedDict, total=False):
     engine: str | None
     jobs: int
     tell: Tell | None
+    plan: Tell | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -212,11 +220,13 @@ def screen(
     engine: str | None = None,
     jobs: int = 1,
     tell: Tell | None = None,
+    plan: Tell | None = None,
 ) -> Screening:
     """Find which assumptions may be held, and which filters left out, without moving an answer beyond the tolerance.
 
-    A first Ctrl-C ends it after the run that is under way, with what is known by then (`Screening.ended`). The model
-    and its workbook stay as they are. The trials are plain Monte Carlo, whatever its settings say.
+    A first Ctrl-C ends it after the run that is under way, with what is known by then (`Screening.ended`); the first
+    run ends with the blocks of trials in progress. The model and its workbook stay as they are. The trials are plain
+    Monte Carlo, whatever its settings say.
 
     Args:
         model: to screen.
@@ -233,6 +243,7 @@ def screen(
         engine: of every run.
         jobs: of every run.
         tell: called before every run with what it is for, how many are left, and how long they may take.
+        plan: called after the first run with how many further ones are to come, if they take long.
 
     Raises:
         SimulationError: an argument is out of its range, no name fits a set, or fewer than two trials are accepted, or
@@ -244,9 +255,20 @@ def screen(
     stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, model.forecasts)
     wanted = [names_of_rows(pattern, model.live, "assumption that is drawn") for pattern in sets]
     asked = [name for text in judged_by for name in names_of_rows(text, model.forecasts, "forecast")]
-    with Steps(tell) as steps:
+    with Steps(tell, plan=plan) as steps:
         steps.begin("the book as it is")
-        run = simulate(with_plain_sampling(model), trials=trials, seed=seed, engine=engine, jobs=jobs)
+        began = perf_counter()
+        run = steps.first_run(
+            partial(
+                simulate,
+                with_plain_sampling(model),
+                trials=trials,
+                seed=seed,
+                engine=engine,
+                jobs=jobs,
+                keep_interrupted=True,
+            )
+        )
         if run.accepted < _FEWEST:
             message = (
                 f"{run.accepted} of {count_text(run.trials)} trials were accepted, too few to compare anything with"
@@ -254,7 +276,8 @@ def screen(
             raise SimulationError(
                 message, hint="run more trials, or see whether the filters contradict the assumptions"
             )
-        screened = _Screen(run, stated, chance_of(chance), acceptance_tolerance, engine, jobs, steps, asked)
+        seconds = perf_counter() - began
+        screened = _Screen(run, stated, chance_of(chance), acceptance_tolerance, engine, jobs, steps, asked, seconds)
         return screened.screening(wanted, ends=ends)
 
 
@@ -271,7 +294,9 @@ class _Screen:
         jobs: int,
         steps: Steps,
         asked: Sequence[str],
+        seconds: float,
     ) -> None:
+        self._seconds = seconds
         self._run, self._chance, self._acceptance_tolerance = run, chance, acceptance_tolerance
         self._engine, self._jobs, self._steps = engine, jobs, steps
         self._accepted = {f.name: Accepted.of_run(run, f.name) for f in run.model.forecasts}
@@ -292,24 +317,37 @@ class _Screen:
             for f in self._judged
         }
         self._runs = 1
+        self._reach = reach_of(run.model) if len(run.model.live) > ALONE else {}
         self._as_it_is: dict[str, Difference] = {}
         self._every: dict[str, _Every] = {}
 
     def screening(self, sets: Sequence[tuple[str, ...]], *, ends: bool) -> Screening:
         model = self._run.model
+        self._steps.can_end()
         self._steps.begin("what the accepted trials tell")
         freezable = [a for a in model.live if a.base is not None]
-        expected = sorted((Expected(a.name, self._expect_cost(a)) for a in freezable), key=lambda each: each.size)
-        self._steps.can_end()
+        ranked = (Expected(a.name, self._expect_cost(a)) for a in self._steps.each(freezable))
+        expected = sorted(ranked, key=lambda each: each.size)
         further = len(sets) + len(model.filters) + (2 * len(freezable) if ends else 0)
+        seconds = perf_counter()
         at_once = None if ends or len(expected) <= ALONE else self._at_once(expected, further)
         alone = [each for each in expected if at_once is None or each.name not in at_once.names]
-        self._steps.expect(len(alone) + int(log2(len(alone) + 1)) + further)
-        single = tuple(self._freeze([each.name]) for each in self._steps.each(alone))
+        rounds = self._rounds([(each.name,) for each in alone])
+        made, most = self._runs - 1, 2 * len(rounds) + int(log2(len(alone) + 1)) + further
+        each_run = (perf_counter() - seconds) / made if made else _RUNS_OF_COMPARING * self._seconds
+        self._steps.say_plan(
+            f"Holds {count_text(len(alone))} assumptions in {count_text(len(rounds))} runs, then together: about "
+            f"{count_text(most)} further runs of {count_text(self._run.trials)} trials",
+            most * each_run,
+        )
+        self._steps.expect(2 * len(rounds) + int(log2(len(alone) + 1)) + further)
+        costs = [cost for names in self._steps.each(rounds) for cost in self._freeze_apart(names)]
+        rank = {each.name: number for number, each in enumerate(expected)}
+        single = tuple(sorted(costs, key=lambda cost: rank[cost.names[0]]))
         correlated = self._correlated(single, at_once.names if at_once else ())
         self._steps.expect(len(correlated) + int(log2(len(alone) + 1)) + further)
         groups = tuple(self._freeze(names) for names in self._steps.each(correlated))
-        joint = self._together((*([at_once] if at_once else []), *single, *groups), self._freeze)
+        joint = self._together((*single, *groups), self._freeze, at_once)
         frozen = joint.names if joint else ()
         self._steps.expect(further)
 
@@ -382,19 +420,31 @@ class _Screen:
         purpose: str,
         frozen_at: Mapping[str, float] | None = None,
     ) -> Cost:
+        """Run the book with a change, over the same trials, and compare the answers."""
+        return self._compare(tuple(names), self._run_with(frozen, without, purpose, frozen_at))
+
+    def _run_with(
+        self,
+        frozen: Sequence[str],
+        without: Sequence[str],
+        purpose: str,
+        frozen_at: Mapping[str, float] | None = None,
+    ) -> RunResult:
         """Run the book with a change, over the same trials."""
         self._steps.begin(purpose)
         self._runs += 1
         model = with_changes(self._run.model, frozen=frozen, without=without, frozen_at=frozen_at)
         settings = self._run.settings
-        run = simulate(
+        return simulate(
             model, trials=settings.trials, seed=settings.seed, engine=self._engine, jobs=self._jobs, keep_inputs=0
         )
-        return self._compare(tuple(names), run)
 
-    def _compare(self, names: tuple[str, ...], run: RunResult) -> Cost:
+    def _compare(self, names: tuple[str, ...], run: RunResult, only: Collection[str] | None = None) -> Cost:
+        """Compare a run with that of the book as it is; the answers beside `only` are taken for unchanged."""
         accepted = acceptance(self._run, run)
-        result = {f.name: self._difference(f, run) for f in self._judged}
+        result = {
+            f.name: self._difference(f, run if only is None or f.name in only else self._run) for f in self._judged
+        }
         limits = {name: each.tolerances(self._tolerances[name][0], self._chance) for name, each in result.items()}
         sizes = {
             f"{name}, {number}": (change.difference, limits[name][number])
@@ -421,14 +471,19 @@ class _Screen:
             self._as_it_is[name] = compared(first)
         return self._as_it_is[name]
 
-    def _together(self, single: Sequence[Cost], changed: Callable[[Sequence[str]], Cost]) -> Cost | None:
+    def _together(
+        self, single: Sequence[Cost], changed: Callable[[Sequence[str]], Cost], at_once: Cost | None = None
+    ) -> Cost | None:
         """As many of the changes that are within alone as are within together, the cheapest first.
 
-        The longest list of the cheapest by halving, then each of the others on top of it.
+        The longest list of the cheapest by halving, then each of the others on top of it; of many on top of those that
+        are held `at_once`.
         """
         alone = sorted((c for c in single if c.judgement.verdict is Verdict.WITHIN), key=lambda cost: cost.size)
         if not alone:
-            return None
+            return at_once
+        if at_once is not None:
+            return self._with_more(at_once, [cost.names for cost in alone])
         best, low, high = alone[0], 1, len(alone)
         length = high
         while low < high and not self._steps.ended:
@@ -438,11 +493,50 @@ class _Screen:
             else:
                 high = length - 1
             length = (low + high + 1) // 2
-        for each in self._steps.each(alone[low + 1 :]):  # the one after the longest list is known not to fit
+        rest = alone[low + 1 :]  # the one after the longest list is known not to fit
+        if len(rest) > ALONE and changed == self._freeze:
+            return self._with_more(best, [cost.names for cost in rest])
+        for each in self._steps.each(rest):
             cost = changed(_all_names((best, each)))
             if cost.judgement.verdict is Verdict.WITHIN:
                 best = cost
         return best
+
+    def _with_more(self, best: Cost, rest: Sequence[tuple[str, ...]]) -> Cost:
+        """Return the most assumptions that may be held together: the best so far, and of the rest what also fits.
+
+        As if each were held on top of all that fit before it: what reaches no common forecast, in one run.
+        """
+        names = list(best.names)
+        rounds = self._rounds(rest)
+        for number, round_ in enumerate(rounds):
+            if self._steps.ended:
+                return best
+            self._steps.expect(len(rounds) - number + 1)
+            costs = self._freeze_apart(round_, names)
+            fitting = [cost.names for cost in costs if cost.judgement.verdict is Verdict.WITHIN]
+            names = list(dict.fromkeys((*names, *(name for each in fitting for name in each))))
+        together = self._freeze(names) if len(names) > len(best.names) and not self._steps.ended else best
+        return together if together.judgement.verdict is Verdict.WITHIN else best
+
+    def _rounds(self, candidates: Sequence[tuple[str, ...]]) -> list[list[tuple[str, ...]]]:
+        """Put what is to be held into runs: of many assumptions those that reach no common forecast into one."""
+        if not self._reach:
+            return [[names] for names in candidates]
+        return apart(candidates, [self._reached(names) for names in candidates])
+
+    def _reached(self, names: Iterable[str]) -> frozenset[str]:
+        return frozenset[str]().union(*(self._reach[name] for name in names))
+
+    def _freeze_apart(self, round_: Sequence[tuple[str, ...]], also: Sequence[str] = ()) -> list[Cost]:
+        """Hold several that reach no common forecast in one run, and return what each costs, on top of what is held
+        with all.
+        """
+        held = list(dict.fromkeys((*also, *(name for names in round_ for name in names))))
+        if len(round_) == 1:
+            return [replace(self._freeze(held), names=round_[0])]
+        run = self._run_with(held, (), f"{len(held)} held, {len(round_)} of them apart from each other")
+        return [self._compare(names, run, self._reached(names)) for names in round_]
 
     def _correlated(self, single: Sequence[Cost], at_once: Sequence[str]) -> list[tuple[str, ...]]:
         """Return groups of correlated assumptions with one at least that cannot be held alone."""
@@ -466,6 +560,8 @@ class _Screen:
         share = float(near.mean() / np.mean(np.abs(prior - base) <= width))
         sizes = [abs(share - 1.0) / self._acceptance_tolerance]
         for forecast in self._judged:
+            if self._reach and forecast.name not in self._reach[assumption.name]:
+                continue
             values, tolerance = self._run.forecasts[forecast.name][: drawn.size], self._tolerances[forecast.name][0]
             if shares := self._shares[forecast.name]:
                 sizes.append(_largest_move_of_shares(values, near, shares.values(), tolerance, self._chance))

@@ -104,10 +104,10 @@ class Steps:
             self._plan = None
 
     def first_run(self, run: Callable[[], RunResult]) -> RunResult:
-        """Make the run that all else begins with, which may end by Ctrl-C with the trials that it has by then.
+        """Make a run that all else begins with, which may end by Ctrl-C with the trials that it has by then.
 
         Args:
-            run: makes it, with `keep_interrupted`.
+            run: makes it, with `keep_interrupted`; Ctrl-C was not pressed yet.
 
         Raises:
             KeyboardInterrupt: Ctrl-C was pressed before there were any trials, or where they belong together.

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from math import ceil, inf
 from typing import TypedDict
 
@@ -179,7 +180,8 @@ def compare(
 ) -> Comparison:
     """Run two books of one scene over the same trials, and judge whether their answers agree.
 
-    Once both are run, a first Ctrl-C ends the search for causes (`Comparison.ended`).
+    A first Ctrl-C ends the search for causes (`Comparison.ended`). Before both are run, it ends a run with the blocks
+    of trials in progress, and both books are compared over these trials.
 
     An assumption of the same name takes the same random numbers in both. Forecasts are paired by name. The trials are
     plain Monte Carlo, whatever the books' settings say.
@@ -263,17 +265,30 @@ def _compared(
         steps.begin(purpose)
         return simulate(model, trials=trials, seed=seed, engine=engine, jobs=jobs, keep_inputs=keep_inputs)
 
+    def first_run(model: CompiledModel, purpose: str) -> RunResult:
+        """Run a book, which Ctrl-C ends with the trials that it has by then, once; all others then have so many."""
+        nonlocal made, trials
+        made += 1
+        steps.begin(purpose)
+        again = partial(simulate, model, trials=trials, seed=seed, engine=engine, jobs=jobs, keep_inputs=0)
+        result = again() if steps.ended else steps.first_run(partial(again, keep_interrupted=True))
+        trials = result.trials
+        return result
+
     source = None
     steps.expect(3 if feeds else 2)
     if feeds:
         if pairs:
             raise SimulationError("a book that feeds another is not paired with it", hint="leave the pairs out")
-        source = run(second, second.path.name)
+        source = first_run(second, second.path.name)
         second = fed_model(first, source, feeds)
     matched = _match_forecasts(first, second, pairs or {})
     factors = [_factor(*pair) for pair in matched]
     stated = read_tolerances([tolerance] if isinstance(tolerance, str) else tolerance, [mine for mine, _ in matched])
-    books = run(first, first.path.name), run(second, second.path.name)
+    books = first_run(first, first.path.name), first_run(second, second.path.name)
+    if books[0].trials > trials:  # the second was interrupted
+        books = first_run(first, first.path.name), books[1]
+    fewer = steps.ended
     steps.can_end()
     inputs = inputs_of(*books)
     search = _Search(books, inputs, Variations(*books, run), chance_of(chance), causes and source is None)
@@ -293,7 +308,7 @@ def _compared(
         unpaired=_unpaired_forecasts(first, second, matched),
         runs=made,
         source=source,
-        ended=steps.why_ended if search.ended else "",
+        ended=steps.why_ended if search.ended or fewer else "",
     )
 
 

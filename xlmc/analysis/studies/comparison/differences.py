@@ -185,14 +185,15 @@ def difference(
     mean = change(mean_of(first), mean_of(second))
     deviation = change(standard_deviation_of(first), standard_deviation_of(second))
     yes_no = first.sample.yes_no and second.sample.yes_no
+    curves = None if yes_no else _Curves.of(pair)
     return Difference(
         mean=mean,
         standard_deviation=replace(deviation, difference=_of_deviations(deviation)) if yes_no else deviation,
         low=change(quantile_of(first, tail), quantile_of(second, tail)),
         high=change(quantile_of(first, 1.0 - tail), quantile_of(second, 1.0 - tail)),
         share=share,
-        kolmogorov=_distance_of_shares(mean.difference) if yes_no else _kolmogorov(pair),
-        wasserstein=_distance_of_shares(mean.difference) if yes_no else _wasserstein(pair),
+        kolmogorov=_distance_of_shares(mean.difference) if curves is None else _kolmogorov(pair, curves),
+        wasserstein=_distance_of_shares(mean.difference) if curves is None else _wasserstein(pair, curves),
         largest=float(np.abs(pair.apart).max()) if pair.apart.size else float("nan"),
         typical=float(np.sqrt(np.mean(pair.apart**2))) if pair.apart.size else float("nan"),
         threshold=threshold,
@@ -247,13 +248,33 @@ def _distance_of_shares(apart: Estimate) -> Estimate:
     return replace(apart, value=abs(apart.value), interval=(0.0 if crosses else low, high))
 
 
-def _kolmogorov(pair: Pair) -> Estimate:
+@dataclass(frozen=True, slots=True, eq=False)
+class _Curves:
+    """The distribution functions of both runs.
+
+    Attributes:
+        points: `(p,)` all values, ascending.
+        gaps: `(p,)` how far the second function lies above the first at each.
+    """
+
+    points: Floats
+    gaps: Floats
+
+    @classmethod
+    def of(cls, pair: Pair) -> _Curves:
+        first, second = pair.first.sample.x, pair.second.sample.x
+        points = np.union1d(first, second)
+        if not first.size or not second.size:
+            return cls(points, np.full(points.size, np.nan))
+        return cls(points, _share_below(second, points) - _share_below(first, points))
+
+
+def _kolmogorov(pair: Pair, curves: _Curves) -> Estimate:
     """Return the largest difference of the distribution functions, 0 to 1."""
     first, second, n = pair.first, pair.second, _fewest(pair)
     if n == 0:
         return Estimate(np.nan)
-    points = np.union1d(first.sample.x, second.sample.x)
-    gaps = _share_below(second.sample.x, points) - _share_below(first.sample.x, points)
+    points, gaps = curves.points, curves.gaps
     most = int(np.argmax(np.abs(gaps)))
     pulls = [
         ((run.values <= points[most]) - _share_below(run.sample.x, points[most])) / run.m for run in (first, second)
@@ -261,18 +282,26 @@ def _kolmogorov(pair: Pair) -> Estimate:
     return with_error(abs(float(gaps[most])), pair.error(*pulls), n - 1.0, 0.95, n)
 
 
-def _wasserstein(pair: Pair) -> Estimate:
+def _wasserstein(pair: Pair, curves: _Curves) -> Estimate:
     """Return the area between the distribution functions, in the unit of the values."""
     first, second, n = pair.first, pair.second, _fewest(pair)
     if n == 0:
         return Estimate(np.nan)
-    points = np.union1d(first.sample.x, second.sample.x)
-    gaps = (_share_below(second.sample.x, points) - _share_below(first.sample.x, points))[:-1]
+    points, gaps = curves.points, curves.gaps[:-1]
     widths = np.diff(points)
     potential = np.concatenate([[0.0], -np.cumsum(np.sign(gaps) * widths)])
-    potentials = [potential[np.searchsorted(points, run.values)] for run in (first, second)]
+    potentials = [_in_order_of(run, potential[np.searchsorted(points, run.sample.x)]) for run in (first, second)]
     pulls = [(g - g.mean()) / g.size for g in potentials]
     return with_error(float(np.sum(np.abs(gaps) * widths)), pair.error(*pulls), n - 1.0, 0.95, n)
+
+
+def _in_order_of(run: Accepted, ascending: Floats) -> Floats:
+    """Return what belongs to the values in ascending order in the order of the trials: ascending values are looked up
+    several times as fast.
+    """
+    result = np.empty(ascending.size)
+    result[run.order] = ascending
+    return result
 
 
 def _fewest(pair: Pair) -> int:

@@ -98,6 +98,11 @@ class Accepted:
         """The values in ascending order."""
         return Sample.of(self.values, two_valued=self.kind is Kind.YES_NO)
 
+    @cached_property
+    def order(self) -> Indices:
+        """`(m,)` the trials' positions in ascending order of their values."""
+        return np.argsort(self.values)
+
     @property
     def is_share(self) -> bool:
         """Whether the answers are counted: of yes and no, and of texts."""

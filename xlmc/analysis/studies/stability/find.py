@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from typing import TYPE_CHECKING, Final
 
 from xlmc.analysis.studies.stability.averaged_directions import averaged_directions
@@ -27,7 +28,6 @@ from xlmc.engine.graph.nodes import Apply
 from xlmc.engine.passes.derivatives.sweep import owners
 from xlmc.errors import SimulationError
 from xlmc.montecarlo.simulation.simulate import simulate
-from xlmc.montecarlo.simulation.simulation import RunResult
 
 if TYPE_CHECKING:
     from xlmc.excel.address import Cell
@@ -60,7 +60,8 @@ def stability(
 ) -> Stability:
     """Look through the cells that a model needs.
 
-    A first Ctrl-C after the run ends it with what was found by then (`Stability.ended`).
+    A first Ctrl-C ends it with what was found by then (`Stability.ended`), the run with the blocks of trials in
+    progress.
 
     Args:
         model: the workbook.
@@ -79,9 +80,9 @@ def stability(
     extent = Extent(model)
     with Steps(tell) as steps:
         steps.begin("a run")
-        run: RunResult = simulate(model, trials=trials, seed=seed, jobs=jobs)
-        case = Case(extent, run, run.settings.seed)
+        run = steps.first_run(partial(simulate, model, trials=trials, seed=seed, jobs=jobs, keep_interrupted=True))
         steps.can_end()
+        case = Case(extent, run, run.settings.seed)
         steps.expect(len(_DETECTORS) + 1)
         findings: list[Finding] = []
         left = dict(_DETECTORS)

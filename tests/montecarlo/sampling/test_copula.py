@@ -232,6 +232,7 @@ def test_continuous_up_to_the_bounds(first, second):
     """The integral comes to Frechet's bounds as the parameter comes to 1."""
     assert spearman(first, second, 1 - 1e-9) == pytest.approx(bounds(first, second)[1], abs=2e-4)
     assert spearman(first, second, -1 + 1e-9) == pytest.approx(bounds(first, second)[0], abs=2e-4)
+    assert (spearman(first, second, -1.0), spearman(first, second, 1.0)) == pytest.approx(bounds(first, second))
 
 
 @pytest.mark.parametrize(("first", "second"), PAIRS)

@@ -167,13 +167,14 @@ class _Found:
 
 def _spread_out(value: Value, jet: Jet, into: Floats) -> None:
     """Write first derivatives, and their errors, `(2, n, k)`: NaN where the value is lost, 0 where it does not vary."""
-    lost = np.asarray((value.kinds >= ERROR) | (value.kinds == TEXT))
-    into[:] = np.where(lost, np.nan, 0.0)[None, :, None]
+    into[:] = 0.0
     if columns := list(jet.active):
         for kind, part in enumerate((jet.first, jet.error)):
             if part is not None:
                 into[kind][:, columns] = np.broadcast_to(part, (len(columns), into.shape[1])).T
-        into[1][np.isnan(into[0])] = np.nan
+    lost = np.asarray((value.kinds >= ERROR) | (value.kinds == TEXT))[:, None]
+    into[1][np.isnan(into[0]) | lost] = np.nan
+    into[0][np.broadcast_to(lost, into[0].shape)] = np.nan
 
 
 def _sweep(

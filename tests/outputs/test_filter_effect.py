@@ -11,12 +11,12 @@ from xlmc.outputs import filter_effect as module
 from xlmc.outputs.document.content.assumptions import assumption_remarks
 from xlmc.outputs.filter_effect import (
     DRAWN,
+    draws_of_prior,
     filter_effect,
     filter_effect_of,
     marginal,
     shapes,
     shapes_of,
-    told_of_prior,
 )
 
 RANDOM = np.random.default_rng(11)
@@ -82,7 +82,7 @@ def test_of_many_assumptions_fewer_draws_before_filtering_are_summarised(make, m
     run = make.simulate(cells, assumptions, [make.forecast("sum", "B1")], trials=20_000)
     result = filter_effect_of(run, "a1")
     assert result.prior == marginal(run.prior["a1"][:messages])
-    assert result.prior.trials == told_of_prior(run) == messages
+    assert result.prior.trials == draws_of_prior(run) == messages
     assert result.accepted.trials == 20_000
     assert any(f"he first {messages:,} trials" in each for each in assumption_remarks(run))
 

@@ -217,8 +217,8 @@ class Model:
         from xlmc.montecarlo.definitions.scenarios import Frozen, Scenario
         from xlmc.montecarlo.model.keywords import assumption_named
 
-        held = tuple(Frozen(assumption_named(self._compiled, name)) for name in names)
-        return self._with(Scenario("changed in Python", held))
+        frozen = tuple(Frozen(assumption_named(self._compiled, name)) for name in names)
+        return self._with(Scenario("changed in Python", frozen))
 
     def _with(self, scenario: Scenario) -> Model:
         from xlmc.analysis.studies.scenario_answers import model_of

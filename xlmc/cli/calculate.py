@@ -28,7 +28,7 @@ NO_VALUE: Final = 1
 """Exit code where a cell has no value that should have one."""
 
 _TABLES: Final = (".csv", ".json")
-_MOST_TOLD: Final = 12
+_MOST_LISTED: Final = 12
 
 
 @click.command()
@@ -283,8 +283,8 @@ def _tell(answers: _Answers, book: Path, outputs: Sequence[Path]) -> None:
                 if cell not in listed:
                     listed.append(cell)
     for (message, why), listed in by_reason.items():
-        shown = ", ".join(map(str, listed[:_MOST_TOLD]))
-        more = f" and {count_text(len(listed) - _MOST_TOLD)} more" if len(listed) > _MOST_TOLD else ""
+        shown = ", ".join(map(str, listed[:_MOST_LISTED]))
+        more = f" and {count_text(len(listed) - _MOST_LISTED)} more" if len(listed) > _MOST_LISTED else ""
         if len(listed) > 1:
             message = message.replace("has", "have").replace("keeps", "keep")
         who = "it" if len(listed) == 1 else "they"

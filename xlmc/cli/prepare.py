@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 __all__ = ["prepare_book"]
 
-_MOST_TOLD: Final = 40
+_MOST_LISTED: Final = 40
 
 
 @click.command(name="prepare")
@@ -116,15 +116,15 @@ def _show(prepared: Prepared, workbook: Workbook) -> None:
     ):
         if not rows:
             continue
-        shown = rows[:_MOST_TOLD]
+        shown = rows[:_MOST_LISTED]
         forms = forms_of(workbook, [each.cell for each in shown])
         lines = [
             (each.name, str(each.cell), content_in(form, each.value), each.units)
             for each, form in zip(shown, forms, strict=True)
         ]
         table(title, ("Name", "Cell", "Value", "Units"), lines, right=(2,))
-        if len(rows) > _MOST_TOLD:
-            say(f"… and {count_text(len(rows) - _MOST_TOLD)} more.")
+        if len(rows) > _MOST_LISTED:
+            say(f"… and {count_text(len(rows) - _MOST_LISTED)} more.")
     if prepared.proposals.further:
         more = prepared.proposals.further
         many = f"{count_text(more)} more formulas are" if more > 1 else "1 more formula is"
@@ -132,7 +132,7 @@ def _show(prepared: Prepared, workbook: Workbook) -> None:
             paragraph(f"note: {many} used by no other: name answers with --forecast Sheet!Cell."),
             err=True,
         )
-    for cell, why in prepared.proposals.passed_over[:_MOST_TOLD]:
+    for cell, why in prepared.proposals.passed_over[:_MOST_LISTED]:
         say(f"note: {cell} {why}, and has no row.", err=True)
     if not prepared.proposals.assumptions and not prepared.proposals.forecasts and prepared.sheet:
         say("note: no formula uses a number that is typed into a cell: the tables are empty.", err=True)

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 __all__ = ["scenario"]
 
-_MOST_TOLD = 8
+_MOST_LISTED = 8
 
 
 @click.command()
@@ -96,8 +96,8 @@ def _show(edited: EditedWorkbook, model: CompiledModel) -> None:
     if edited.computed:
         say(paragraph(f"{many}, computed by xlmc."))
     if edited.left:
-        skipped = [f"{cell} ({why})" for cell, why in list(edited.left.items())[:_MOST_TOLD]]
-        more = f" and {count_text(len(edited.left) - _MOST_TOLD)} more" if len(edited.left) > _MOST_TOLD else ""
+        skipped = [f"{cell} ({why})" for cell, why in list(edited.left.items())[:_MOST_LISTED]]
+        more = f" and {count_text(len(edited.left) - _MOST_LISTED)} more" if len(edited.left) > _MOST_LISTED else ""
         message = f"could not be computed: {'; '.join(skipped)}{more}. Excel calculates the workbook when it opens it"
         say(f"note: {message}", err=True)
     if edited.has_results:

@@ -126,11 +126,11 @@ class Calculator:
     ) -> Lowering:
         """Lower formulas; nothing varies, so that every node is a constant."""
         resolver, targets = Resolver(book, strict=False), list(cells)
-        held: Mapping[Cell, float] = given  # type: ignore[assignment]  # a value of any type does
+        values: Mapping[Cell, float] = given  # type: ignore[assignment]  # a value of any type does
 
         def lower(more: Mapping[Cell, set[Cell]]) -> Lowering:
             graph = build_graph(resolver, targets, frozenset(), frozenset(given), more=more, strict=False)
-            return Lowering(graph, {}, held, audit=audit, strict=False, moment=self._moment)
+            return Lowering(graph, {}, values, audit=audit, strict=False, moment=self._moment)
 
         return lower_until_complete(lower)
 

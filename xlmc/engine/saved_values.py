@@ -33,7 +33,7 @@ def is_saved_value(lowering: Lowering, cell: Cell, saved: CellValue, got: object
     return (
         same_value(saved, got)
         or _is_logical_of_libreoffice(lowering, saved, got)
-        or _is_settled(lowering, cell, saved, got)
+        or _is_within_the_change(lowering, cell, saved, got)
         or _is_sine_of_32_bits(lowering, cell, saved, got)
     )
 
@@ -98,7 +98,7 @@ def _is_logical_of_libreoffice(lowering: Lowering, saved: CellValue, got: object
     return lowering.graph.workbook.libreoffice and isinstance(got, bool) and _is_number(saved) and saved == got
 
 
-def _is_settled(lowering: Lowering, cell: Cell, saved: CellValue, got: object) -> bool:
+def _is_within_the_change(lowering: Lowering, cell: Cell, saved: CellValue, got: object) -> bool:
     """Return whether a cell that Excel computed iteratively changes by less than where Excel stopped."""
     iteration = lowering.graph.workbook.iteration
     if iteration is None or cell not in lowering.graph.circles or not (_is_number(saved) and _is_number(got)):

@@ -30,12 +30,12 @@ __all__ = [
     "FilterEffect",
     "Marginal",
     "Shapes",
+    "draws_of_prior",
     "filter_effect",
     "filter_effect_of",
     "marginal",
     "shapes",
     "shapes_of",
-    "told_of_prior",
 ]
 
 PERCENTS = (5.0, 50.0, 95.0)
@@ -43,8 +43,8 @@ PERCENTS = (5.0, 50.0, 95.0)
 DRAWN: Final = 100
 """The most assumptions whose shapes are drawn: more would make files slow to write and to open."""
 
-_TOLD: Final = 65_536 * DRAWN
-_LEAST_TOLD: Final = 8_192
+_MOST_DRAWS: Final = 65_536 * DRAWN
+_FEWEST_DRAWS: Final = 8_192
 """Draws before filtering that are summarised: of all assumptions together, and of each at least."""
 
 _BINS = 24
@@ -168,13 +168,13 @@ def marginal(
     )
 
 
-def told_of_prior(simulation: RunResult) -> int:
+def draws_of_prior(simulation: RunResult) -> int:
     """Return how many draws of each assumption before filtering are summarised: all that were kept; of more than
     `DRAWN` assumptions fewer, so that the work does not grow with them.
     """
     kept = next((values.size for values in simulation.prior.values()), 0)
     count = len(simulation.prior)
-    return kept if count <= DRAWN else min(kept, max(_TOLD // count, _LEAST_TOLD))
+    return kept if count <= DRAWN else min(kept, max(_MOST_DRAWS // count, _FEWEST_DRAWS))
 
 
 def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | None:
@@ -186,7 +186,7 @@ def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | N
         weights = None if simulation.weighting is None else simulation.weighting.weights
         replicate = partial(simulation.plan.replicate_of, simulation.trial_index)
         result[assumption] = FilterEffect(
-            partial(_marginal_of, simulation.prior, assumption, lambda: None, None, told_of_prior(simulation)),
+            partial(_marginal_of, simulation.prior, assumption, lambda: None, None, draws_of_prior(simulation)),
             partial(_marginal_of, simulation.inputs, assumption, replicate, weights, None),
         )
     return result[assumption]

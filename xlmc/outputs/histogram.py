@@ -389,7 +389,7 @@ def _decimals(width: float) -> int:
 
 
 _LONGEST_NAME = 90
-_MOST_SAID = 5
+_MOST_TEXTS = 5
 """Texts whose shares a caption gives."""
 
 
@@ -416,7 +416,7 @@ class Figure:
         return f"{self.answer.units} ({bars})" if self.answer.units else f"B{bars[1:]}"
 
     @property
-    def said(self) -> str:
+    def description(self) -> str:
         """The answer in words."""
         row = self.answer
         units = f" {row.units}" if row.units else ""
@@ -428,15 +428,15 @@ class Figure:
             message = f"yes in {answer_text(row)} of {counted_text(row.trials, 'accepted trial')}, else no"
         if row.categories:
             shares = [f"{text or '(empty)'} {share_text(share)}" for text, share in row.categories.items()]
-            more = f"; {count_text(len(shares) - _MOST_SAID)} more texts" if len(shares) > _MOST_SAID else ""
-            message = f"{'; '.join(shares[:_MOST_SAID])}{more}; of {counted_text(row.trials, 'accepted trial')}"
+            more = f"; {count_text(len(shares) - _MOST_TEXTS)} more texts" if len(shares) > _MOST_TEXTS else ""
+            message = f"{'; '.join(shares[:_MOST_TEXTS])}{more}; of {counted_text(row.trials, 'accepted trial')}"
         return message
 
     @property
     def caption(self) -> str:
         """What the figure shows, in words."""
         row, bins = self.answer, self.bins
-        text = f"Figure {self.number}. {self.name}: {self.said}."
+        text = f"Figure {self.number}. {self.name}: {self.description}."
         if bins.counted < row.trials:
             text += (
                 f" Trials are weighted: the chart shows {counted_text(bins.counted, 'trial')} of equal weight instead."

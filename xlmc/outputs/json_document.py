@@ -387,7 +387,7 @@ def _correlation(met: CorrelationMet) -> Json:
 
 
 def _pair(pair: Pair) -> Json:
-    others = (field.name for field in fields(pair) if field.name not in ("first", "second", "said"))
+    others = (field.name for field in fields(pair) if field.name not in ("first", "second", "limit_texts"))
     return {"first": pair.first.name, "second": pair.second.name} | {
         name: _as_json(getattr(pair, name)) for name in others
     }

@@ -109,4 +109,4 @@ def test_a_chart_that_is_no_xml_is_refused():
 def test_the_scene_of_a_template_is_drawn(name):
     drawing = scene_drawing(load(TEMPLATES / f"{name}.xlsx").workbook)
     assert paths(drawing)
-    assert drawing.said.startswith("The drawing, with ")
+    assert drawing.description.startswith("The drawing, with ")

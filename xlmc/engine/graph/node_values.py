@@ -53,8 +53,8 @@ def apart(value: Value) -> Value:
         return value
     parts: list[Any] = []
     for part in value.arrays():
-        held = part is not None and isinstance(part.base, np.ndarray) and part.nbytes < part.base.nbytes
-        parts.append(np.array(part) if held else part)
+        is_part = part is not None and isinstance(part.base, np.ndarray) and part.nbytes < part.base.nbytes
+        parts.append(np.array(part) if is_part else part)
     return value if all(part is old for part, old in zip(parts, value.arrays(), strict=True)) else Value(*parts)
 
 

@@ -22,8 +22,8 @@ from xlmc.excel.functions import Kind
 
 __all__ = ["RepeatedProgram", "RepeatedTargets"]
 
-_MOST_HELD: Final = 64
-"""Numbers that are held at a time; of more, reading them takes as long as computing them."""
+_MOST_UNREACHED: Final = 64
+"""Numbers that are kept at a time; of more, reading them takes as long as computing them."""
 
 Floats = NDArray[np.float64]
 Trials = NDArray[np.intp]
@@ -40,7 +40,7 @@ class RepeatedProgram:
         changing: that input.
         dag, targets: the nodes of `rest`.
         whole: the program of the targets.
-        held: the program of the numbers that they need and that the input does not reach; None where there are none.
+        unreached: the program of the numbers that they need and the input does not reach; None where there are none.
         names: of these numbers, as inputs of `rest`.
         rest: the program of the targets, given these numbers; else `whole`.
         inputs: what `rest` reads, but for `changing`.
@@ -50,7 +50,7 @@ class RepeatedProgram:
     dag: Dag
     targets: tuple[int, ...]
     whole: NumpyProgram
-    held: NumpyProgram | None
+    unreached: NumpyProgram | None
     names: tuple[str, ...]
     rest: NumpyProgram
     inputs: tuple[str, ...]
@@ -63,7 +63,7 @@ class RepeatedProgram:
         size = array_bytes(lowering, nodes, [], computed)
         whole = NumpyProgram(dag, nodes, [], frozenset(), NodeBounds(dag, {}), size)
         names = {node: f"\0held {node}" for node in _unreached(dag, nodes, computed, changing)}
-        if not 0 < len(names) <= _MOST_HELD:
+        if not 0 < len(names) <= _MOST_UNREACHED:
             return cls(changing, dag, (*nodes,), whole, None, (), whole, _inputs(dag, nodes, changing))
         first = NumpyProgram(dag, [*names], [], frozenset(), NodeBounds(dag, {}), size)
         given = dag.with_inputs(names)
@@ -72,8 +72,8 @@ class RepeatedProgram:
 
     def evaluated(self, given: Mapping[str, Floats], n: int) -> RepeatedTargets:
         """Return the targets as a function of the input and the trial, of other inputs `(n,)` each; for one thread."""
-        held = self.read(given, n)
-        program, read = (self.whole, given) if held is None else (self.rest, held)
+        known = self.read(given, n)
+        program, read = (self.whole, given) if known is None else (self.rest, known)
         block = min(program.largest_block, max(n, 1))
         evaluator = program.evaluator(block)
         chosen: tuple[Trials | None, Mapping[str, Floats]] = None, read
@@ -96,10 +96,10 @@ class RepeatedProgram:
     def read(self, given: Mapping[str, Floats], n: int) -> dict[str, Floats] | None:
         """Compute what `rest` reads beside the input, `(n,)` each; None if it is no number in a trial."""
         known = dict(given)
-        if self.held is None:
+        if self.unreached is None:
             return {name: known[name] for name in self.inputs}
-        block = min(self.held.largest_block, max(n, 1))
-        evaluator = self.held.evaluator(block)
+        block = min(self.unreached.largest_block, max(n, 1))
+        evaluator = self.unreached.evaluator(block)
         result = [np.empty(n) for _ in self.names]
         for start in range(0, n, block):
             part = slice(start, min(start + block, n))

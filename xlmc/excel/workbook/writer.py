@@ -43,7 +43,7 @@ _FULL = (errno.ENOSPC, errno.EDQUOT)
 _LIMITED = (errno.EFBIG,)
 _REFUSED = (errno.EACCES, errno.EPERM, errno.EROFS)
 _WRITABLE = stat.S_IWUSR | stat.S_IWGRP | stat.S_IWOTH
-_HELD = frozenset({5, 32, 33, 1224, *range(358, 405), 426})
+_IN_USE = frozenset({5, 32, 33, 1224, *range(358, 405), 426})
 """What Windows says of a file that another program holds (access denied, sharing or lock violation, a mapped file) or
 that OneDrive is at work on (cloud file errors)."""
 _PAUSES = (0.05, 0.1, 0.2, 0.4, 0.8, 1.5)
@@ -268,7 +268,7 @@ def _patiently(rename: Callable[[Path, Path], object], temporary: Path, target: 
 
 
 def _passing(error: OSError) -> bool:
-    return getattr(error, "winerror", None) in _HELD
+    return getattr(error, "winerror", None) in _IN_USE
 
 
 def _write_synced(path: Path, data: bytes) -> None:

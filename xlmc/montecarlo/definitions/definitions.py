@@ -339,13 +339,13 @@ class Solve:
 
     def words(self, code: ErrorCode) -> str:
         """Say why a trial has no value: its cell is then this error."""
-        ends = f"{_said(self.low, self.form_by)} to {_said(self.high, self.form_by)}"
+        ends = f"{_limit_text(self.low, self.form_by)} to {_limit_text(self.high, self.form_by)}"
         what = "several values" if code is ErrorCode.NUM else "no value"
-        made = f"make{'s' * (code is not ErrorCode.NUM)} {self.cell} equal to {_said(self.to, self.form)}"
+        made = f"make{'s' * (code is not ErrorCode.NUM)} {self.cell} equal to {_limit_text(self.to, self.form)}"
         return f"{what} from {ends} {made}"
 
 
-def _said(given: Parameter, form: Form) -> str:
+def _limit_text(given: Parameter, form: Form) -> str:
     return str(given) if isinstance(given, Cell) else form.number(given, typed=True)
 
 

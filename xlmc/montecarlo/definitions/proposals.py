@@ -129,11 +129,11 @@ def _computable(
         Resolver(book, inputs),
         build_graph(Resolver(book, strict=False), cells, frozenset(inputs), strict=False).varying,
     )
-    held = {cell: float(book.content(cell).value) for cell in inputs}  # type: ignore[arg-type]  # inputs are numbers
+    given = {cell: float(book.content(cell).value) for cell in inputs}  # type: ignore[arg-type]  # inputs are numbers
 
     def fault(wanted: list[Cell]) -> FormulaError | None:
         try:
-            lowering = lower_cells(resolver, wanted, {}, held)
+            lowering = lower_cells(resolver, wanted, {}, given)
         except FormulaError as error:
             return error
         return next((each for cell, each in lowering.faults.items() if cell in varying), None)

@@ -16,7 +16,7 @@ from xlmc.montecarlo.number_text import count_text
 if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
 
-__all__ = ["unsettled_notices"]
+__all__ = ["unconverged_notices"]
 
 _TRIALS: Final = 1 << 14
 """Trials that are looked at: they are computed once more."""
@@ -26,7 +26,7 @@ _BLOCK: Final = 1 << 12
 Floats = NDArray[np.float64]
 
 
-def unsettled_notices(model: CompiledModel, drawn: Mapping[str, Floats]) -> list[Notice]:
+def unconverged_notices(model: CompiledModel, drawn: Mapping[str, Floats]) -> list[Notice]:
     """Say which circles do not settle, and how often.
 
     Args:

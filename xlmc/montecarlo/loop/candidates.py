@@ -95,10 +95,10 @@ class CandidateTrials:
         self._typed: dict[Values, CompiledModel | None] = {}
         self._by_texts: dict[Values, CandidateTrials | None] = {}
         self._is_text = tuple(bool(each.contents) for each in decisions)
-        self._runners: dict[tuple[int, int], tuple[_HeldDraws, ModelRunner]] = {}
+        self._runners: dict[tuple[int, int], tuple[_FixedDraws, ModelRunner]] = {}
         self.computed = 0
-        self._held = self._with_inputs()
-        self.by_typing = self._held is None
+        self._by_inputs = self._with_inputs()
+        self.by_typing = self._by_inputs is None
 
     def forecasts(self, candidates: Sequence[Values], start: int, stop: int) -> list[Computed]:
         """Return the trials of each candidate from `start` to `stop`."""
@@ -166,17 +166,17 @@ class CandidateTrials:
         if self.by_typing:
             model = self._model_of(candidate)
             return None if model is None else _runner_of(model, self._engine, self._seed, size)
-        assert self._held is not None
+        assert self._by_inputs is not None
         if (worker, size) not in self._runners:
-            draws = _HeldDraws(self._held, self._decisions, self._seed, size, self._engine)
-            evaluator = self._held.program(self._engine).evaluator(size)
+            draws = _FixedDraws(self._by_inputs, self._decisions, self._seed, size, self._engine)
+            evaluator = self._by_inputs.program(self._engine).evaluator(size)
             made = ModelRunner(
                 draws,
                 evaluator,
                 size,
-                len(self._held.forecasts),
-                self._held.fallible,
-                self._held.categories,
+                len(self._by_inputs.forecasts),
+                self._by_inputs.fallible,
+                self._by_inputs.categories,
             )
             self._runners[worker, size] = draws, made
         draws, runner = self._runners[worker, size]
@@ -235,7 +235,7 @@ class CandidateTrials:
             model = _model_with_inputs(self._model, self._decisions)
         except XlmcError:
             return None
-        self._held, self.by_typing = model, False
+        self._by_inputs, self.by_typing = model, False
         for candidate in self._looked_at():
             self.by_typing = False
             (held,) = self.forecasts([candidate], 0, _CHECKED)
@@ -293,42 +293,42 @@ def _model_with_inputs(model: CompiledModel, decisions: Sequence[Decision]) -> C
     )
 
 
-class _HeldDraw(Draw):
+class _FixedDraw(Draw):
     """A decision, which is the same in all trials of a candidate."""
 
-    held: Callable[[], float]
+    value: Callable[[], float]
 
     def fill(self, u: Floats, dynamic: Mapping[Cell, Floats]) -> None:
         """See `Draw`."""
-        u[:] = self.held()
+        u[:] = self.value()
 
     def offset_and_factor(self) -> None:
         """See `Draw`."""
 
     @classmethod
-    def instead_of(cls, draw: Draw, held: Callable[[], float]) -> _HeldDraw:
+    def instead_of(cls, draw: Draw, value: Callable[[], float]) -> _FixedDraw:
         """Return what takes the place of a draw."""
-        held_draw = cls(draw.name, draw.family, draw.parameters, draw.cutoffs)
-        object.__setattr__(held_draw, "held", held)  # a draw is frozen
-        return held_draw
+        fixed_draw = cls(draw.name, draw.family, draw.parameters, draw.cutoffs)
+        object.__setattr__(fixed_draw, "value", value)  # a draw is frozen
+        return fixed_draw
 
 
 @dataclass(slots=True)
-class _Held:
+class _Slot:
     value: float = 0.0
 
 
-class _HeldDraws:
+class _FixedDraws:
     """Draws of the assumptions, and the values of one candidate beside them; takes the place of a `Sampler`."""
 
     linear: Linear | None = None
 
     def __init__(self, model: CompiledModel, decisions: Sequence[Decision], seed: int, block: int, engine: str) -> None:
-        self._values = {_key(each): _Held() for each in decisions}
+        self._values = {_key(each): _Slot() for each in decisions}
         draws = dict(model.draws)
-        for name, held in self._values.items():
+        for name, slot in self._values.items():
             if name in draws:
-                draws[name] = _HeldDraw.instead_of(draws[name], lambda held=held: held.value)  # type: ignore[misc]
+                draws[name] = _FixedDraw.instead_of(draws[name], lambda slot=slot: slot.value)  # type: ignore[misc]
         self._sampler = model.sampler(seed, block, engine, draws=draws)
         self._again = len(model.needed.stages) < 2
         self._stored: dict[int, dict[str, Floats]] = {}
@@ -341,8 +341,8 @@ class _HeldDraws:
 
     def hold(self, candidate: Values) -> None:
         """Take the values of a candidate."""
-        for held, value in zip(self._values.values(), candidate, strict=True):
-            held.value = value
+        for slot, value in zip(self._values.values(), candidate, strict=True):
+            slot.value = value
 
     def draw(self, start: int) -> dict[str, Floats]:
         """See `Sampler`. Draws that depend on no decision stay from candidate to candidate."""
@@ -353,7 +353,7 @@ class _HeldDraws:
             drawn = {name: values.copy() for name, values in self._sampler.draw(start).items()}
             if len(self._stored) < self._most:
                 self._stored[start] = drawn
-        for name, held in self._values.items():
+        for name, slot in self._values.items():
             if name in drawn:
-                drawn[name][:] = held.value
+                drawn[name][:] = slot.value
         return drawn

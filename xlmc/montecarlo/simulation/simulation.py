@@ -25,7 +25,7 @@ from xlmc.montecarlo.diagnostics.cell_errors import Root, error_roots
 from xlmc.montecarlo.diagnostics.checking import CheckResult, check_results
 from xlmc.montecarlo.diagnostics.digit_watch import lost_digits
 from xlmc.montecarlo.diagnostics.directions import direction_notices
-from xlmc.montecarlo.diagnostics.iteration_watch import unsettled_notices
+from xlmc.montecarlo.diagnostics.iteration_watch import unconverged_notices
 from xlmc.montecarlo.diagnostics.result_answers import Answers, RunFacts
 from xlmc.montecarlo.diagnostics.result_cells import ShownResults, shown_results
 from xlmc.montecarlo.diagnostics.weighing import Weighting, weighting_of
@@ -318,7 +318,7 @@ class RunResult:
         samples = {name: result.sample for name, result in self.results.items() if name not in self.labels}
         notices += [Notice(each) for each in self.agreement.remarks] if self.agreement else []
         notices += direction_notices(each for name, each in self.results.items() if name not in self.labels)
-        notices += unsettled_notices(self.model, self.prior)
+        notices += unconverged_notices(self.model, self.prior)
         return (*notices, *tail_notices(samples, METHODS[self.plan.method].name))
 
     @property

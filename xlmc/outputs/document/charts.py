@@ -92,7 +92,7 @@ def shares_chart(figure: Figure) -> Chart:
     """Draw the share of each text, or of yes and no, with its error."""
     shares = shares_of(figure.answer)
     bars = tuple(_bar(text or "(empty)", share, pale=False) for text, share in frequent_texts(shares)[0].items())
-    return Chart("", "Share of the accepted trials", Bars(bars, SHARE), f"{figure.name}: {figure.said}", 125.0)
+    return Chart("", "Share of the accepted trials", Bars(bars, SHARE), f"{figure.name}: {figure.description}", 125.0)
 
 
 def limit_chart(limit: FilterLimit, indexes: list[int], unit: str, form: Form = PLAIN) -> Chart:

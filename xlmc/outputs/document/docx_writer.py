@@ -80,7 +80,7 @@ class _Writer:
                     for sentence in block.led:
                         paragraph = self._file.add_paragraph(style="List Bullet")
                         for text, bold in zip(sentence, (True, None), strict=True):
-                            run = paragraph.add_run(_said(text))
+                            run = paragraph.add_run(_prose(text))
                             run.font.size, run.bold = _points(_SMALL if look == "small" else _BODY), bold
                 case Code(text):
                     run = self._file.add_paragraph().add_run(printable(text))
@@ -140,12 +140,12 @@ class _Writer:
 
     def _paragraph(self, text: str, size: float, *, bold: bool = False) -> Any:
         made = self._file.add_paragraph()
-        run = made.add_run(_said(text))
+        run = made.add_run(_prose(text))
         run.font.size, run.bold = _points(size), bold or None
         return made
 
     def _caption(self, text: str, *, before: bool = False, within: Any = None) -> None:
-        paragraph = (within or self._file).add_paragraph(_said(text), style="Caption")
+        paragraph = (within or self._file).add_paragraph(_prose(text), style="Caption")
         paragraph.paragraph_format.keep_with_next = before
 
     def _figure(self, within: Any, figure: Figure, paragraph: Any = None) -> None:
@@ -171,7 +171,7 @@ class _Writer:
         from docx.shared import Mm
 
         shape = paragraph.add_run().add_picture(io.BytesIO(next(self._pictures)), width=Mm(drawing.width))
-        shape._inline.docPr.set("descr", printable(drawing.said))
+        shape._inline.docPr.set("descr", printable(drawing.description))
         for side in ("distT", "distB", "distL", "distR"):  # or LibreOffice leaves 3 mm beside it
             shape._inline.set(side, "0")
 
@@ -208,12 +208,12 @@ class _Writer:
         if isinstance(content, Drawing | Chart):
             self._picture(paragraph, content)
         else:
-            run = paragraph.add_run(_said(cell_text(content)))
+            run = paragraph.add_run(_prose(cell_text(content)))
             run.font.size, run.bold = _points(size), bold or None
             _shrink(paragraph, size)
 
 
-def _said(text: str) -> str:
+def _prose(text: str) -> str:
     """Return a text to read, whose numbers stay with their units."""
     return printable(unbroken(text))
 

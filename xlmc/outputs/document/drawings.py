@@ -141,7 +141,7 @@ def _bars(chart: Chart, shown: Bars) -> Drawing:
         result += _bar(bar, top + row * index, row, left, across)
     result.append(line_to(across(0.0), top, across(0.0), bottom, INK))
     result.append(text_at((left + right) / 2, bottom + 28, chart.across_and_looks))
-    return drawing(result, 570.0, bottom + 34, chart.said, chart.width)
+    return drawing(result, 570.0, bottom + 34, chart.description, chart.width)
 
 
 def _bar(bar: Bar, top: float, row: float, left: float, across: Scale) -> list[str]:
@@ -198,7 +198,7 @@ def _lines(chart: Chart, shown: Lines) -> Drawing:
     result.append(text_at((left + right) / 2, bottom + 34, chart.across))
     result.append(text_at(14, (top + bottom) / 2, shown.upwards, turned=True))
     names = max((len(short_name(line.name, _BESIDE)) for line in shown.all), default=0)
-    return drawing(result, max(570.0, right + 44.0 + _CHARACTER * names), bottom + 42, chart.said, chart.width)
+    return drawing(result, max(570.0, right + 44.0 + _CHARACTER * names), bottom + 42, chart.description, chart.width)
 
 
 def _dot(x: float, y: float) -> str:
@@ -236,7 +236,7 @@ def _shape(chart: Chart, shown: Shape) -> Drawing:
     first, last = (end_text(end, high - low) if plain else shown.form.number(end) for end in (low, high))
     result.append(text_at(1.0, height - 2, first, anchor="start", size=13))
     result.append(text_at(width - 1.0, height - 2, last, anchor="end", size=13))
-    return drawing(result, width, height, f"{chart.said}, from {first} to {last}", chart.width)
+    return drawing(result, width, height, f"{chart.description}, from {first} to {last}", chart.width)
 
 
 def end_text(end: float, span: float) -> str:

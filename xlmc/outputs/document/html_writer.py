@@ -71,7 +71,7 @@ def picture_html(picture: Picture, look: str = "drawn") -> Html:
     """Return a picture as SVG in the page itself; its look is `drawn`, or `shape` within a line."""
     shown = drawn(picture) if isinstance(picture, Chart) else picture
     plain = shown.svg.replace(f' font-family="{FONT}"', "")  # the page has a font of its own
-    return Html.of_svg(plain, shown.said, look)
+    return Html.of_svg(plain, shown.description, look)
 
 
 def _table(table: Table) -> Html:

@@ -110,12 +110,12 @@ class Drawing:
 
     Attributes:
         svg: an SVG document of our own making.
-        said: what it shows, for those who cannot see it.
+        description: what it shows, for those who cannot see it.
         width: in millimetres.
     """
 
     svg: str
-    said: str
+    description: str
     width: float
 
 
@@ -223,14 +223,14 @@ class Chart:
         title: above it; empty for none.
         across: the name of the horizontal axis.
         data: what it shows, which says of which kind it is.
-        said: what it shows, for those who cannot see it.
+        description: what it shows, for those who cannot see it.
         width: in millimetres, where it is printed.
     """
 
     title: str
     across: str
     data: Bars | Lines | Shape
-    said: str
+    description: str
     width: float = 150.0
 
     @property
@@ -312,10 +312,10 @@ class Table:
         for row in self.rows:
             for index, cell in enumerate(row):
                 lengths[index] = max(lengths[index], len(cell_text(cell)))
-        wished = [3.0 + min(length, widest) for length in lengths]
-        share = [each / sum(wished) for each in wished]
+        wanted = [3.0 + min(length, widest) for length in lengths]
+        share = [each / sum(wanted) for each in wanted]
         enough = all(width >= each for width, each in zip(share, least, strict=True))
-        return tuple(wished) if enough else _enough(wished, least)
+        return tuple(wanted) if enough else _enough(wanted, least)
 
     @property
     def crowded(self) -> float:
@@ -407,7 +407,7 @@ def cell_text(cell: Content) -> str:
         return cell.written or shown_text(cell)
     if isinstance(cell, Measured):
         return cell.text
-    return cell if isinstance(cell, str) else cell.said
+    return cell if isinstance(cell, str) else cell.description
 
 
 Block = Heading | Paragraph | Bullets | Code | Figure | Table

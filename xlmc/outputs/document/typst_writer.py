@@ -148,11 +148,11 @@ def _block(block: Block | tuple[Figure, ...], leads: bool) -> Iterator[str]:
         case Heading(text, level):
             yield f"#heading(level: {level}, {_text(text)})"
         case Paragraph(text, "warning"):
-            yield f'#block(inset: 6pt, stroke: (left: 3pt + rgb("#9C0006")), strong({_said(text)}))'
+            yield f'#block(inset: 6pt, stroke: (left: 3pt + rgb("#9C0006")), strong({_prose(text)}))'
         case Paragraph(text, look):
-            yield f"#block(sticky: {str(leads).lower()}, par(text(size: {_size(look)}, {_said(text)})))"
+            yield f"#block(sticky: {str(leads).lower()}, par(text(size: {_size(look)}, {_prose(text)})))"
         case Bullets(_, look):
-            items = ", ".join(f"[#strong({_said(lead)})#{_said(rest)}]" for lead, rest in block.led)
+            items = ", ".join(f"[#strong({_prose(lead)})#{_prose(rest)}]" for lead, rest in block.led)
             yield f"#text(size: {_size(look)}, list(spacing: {'.5em' if look == 'small' else '.7em'}, {items}))"
         case Code(text):
             yield f"#raw({_text(text)}, block: true)"
@@ -165,7 +165,7 @@ def _block(block: Block | tuple[Figure, ...], leads: bool) -> Iterator[str]:
 
 
 def _figure(figure: Figure) -> str:
-    return f"figure({_image(figure.drawing)}, caption: [#{_said(figure.caption)}])"
+    return f"figure({_image(figure.drawing)}, caption: [#{_prose(figure.caption)}])"
 
 
 def _size(look: str) -> str:
@@ -176,13 +176,13 @@ def _table(table: Table) -> str:
     columns = ", ".join(f"{width:g}fr" for width in table.relative_widths)
     at_right = table.at_right
     aligned = ", ".join("right" if index in at_right else "left" for index in range(table.columns))
-    heads = ", ".join([_NO_CELL, *(f"[#{_said(head)}]" for head in table.heads)])
+    heads = ", ".join([_NO_CELL, *(f"[#{_prose(head)}]" for head in table.heads)])
     top = f"table.header({heads}), " if heads else ""
     rows = "".join(
         f"  {side}{', '.join(map(_cell, row))},\n" for side, row in zip(_sides(table), table.rows, strict=True)
     )
     inner = f"table(columns: (0pt, {columns},), align: (left, {aligned},), {top}\n{rows})"
-    figure = f"#figure(kind: table, caption: [#{_said(table.caption)}], {inner})"
+    figure = f"#figure(kind: table, caption: [#{_prose(table.caption)}], {inner})"
     looks = []
     if table.crowded > 1.0:
         looks.append(f"#show table: set text(size: {table.letters:.3g}pt)")
@@ -210,16 +210,16 @@ _TOGETHER: Final = 3
 def _cell(content: Content) -> str:
     if isinstance(content, Drawing | Chart):
         return f"[#{_image(content)}]"
-    return f"table.cell(breakable: false, [#{_said(cell_text(content))}])"
+    return f"table.cell(breakable: false, [#{_prose(cell_text(content))}])"
 
 
 def _image(picture: Picture) -> str:
     drawing = drawn(picture) if isinstance(picture, Chart) else picture
     size = f'width: {drawing.width:g}mm, format: "svg"'
-    return f"image(bytes({_text(drawing.svg)}), {size}, alt: {_text(drawing.said)})"
+    return f"image(bytes({_text(drawing.svg)}), {size}, alt: {_text(drawing.description)})"
 
 
-def _said(text: str) -> str:
+def _prose(text: str) -> str:
     """Return a text to read, whose numbers stay with their units, as a string literal of Typst."""
     return _text(unbroken(text))
 

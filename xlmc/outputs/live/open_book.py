@@ -38,7 +38,7 @@ _PAUSE: Final = 0.15
 _KEPT_AFTER: Final = 0.3
 """Seconds after a number was set until the state is written to a file: the answer comes first."""
 
-_TOLD_EVERY: Final = 0.1
+_PROGRESS_EVERY: Final = 0.1
 """Seconds between two messages on how far a run is."""
 
 _SETTLING: Final = (0.0, 0.1, 0.3, 0.6, 1.0)
@@ -322,7 +322,7 @@ class OpenBook:
         loop, last_sent = asyncio.get_running_loop(), [time.monotonic()]
 
         def tell(share: float) -> None:
-            if time.monotonic() - last_sent[0] > _TOLD_EVERY:
+            if time.monotonic() - last_sent[0] > _PROGRESS_EVERY:
                 last_sent[0] = time.monotonic()
                 sent = {"kind": "running", "version": job.version, "stage": job.stage, "share": share}
                 loop.call_soon_threadsafe(self._send, [sent])

@@ -138,8 +138,8 @@ def step_html(run: RunResult, trial: int) -> str:
         (each.name, str(each.cell), _text(float(draws[each.name][trial]), step.forms[each.cell]), each.units)
         for each in model.live
     ]
-    said_of = {True: "yes", False: "no", None: "error"}
-    words = [(each, said_of[held]) for each, held in zip(step.filters, holds, strict=True)]
+    word_of = {True: "yes", False: "no", None: "error"}
+    words = [(each, word_of[met]) for each, met in zip(step.filters, holds, strict=True)]
     words += [(each, "by chance") for each in step.by_chance]
     asked = [(each.name, str(each.cell), limits_text(each), text[each.cell], word) for each, word in words]
     answers = [(each.name, str(each.cell), text[each.cell], each.units) for each in model.forecasts]
@@ -163,9 +163,9 @@ def _filters_table(rows: Sequence[tuple[str, ...]]) -> Table:
 def _verdict(run: RunResult, trial: int, step: Step, holds: Sequence[bool | None]) -> str:
     """Say whether the filters of all forecasts accept a trial, and which do not."""
     which = f"Trial {count_text(trial + 1)}"
-    asked = [(each, held) for each, held in zip(step.filters, holds, strict=True) if each in run.model.filters]
-    against = [each.name for each, held in asked if held is False]
-    wrong = [each.name for each, held in asked if held is None]
+    asked = [(each, met) for each, met in zip(step.filters, holds, strict=True) if each in run.model.filters]
+    against = [each.name for each, met in asked if met is False]
+    wrong = [each.name for each, met in asked if met is None]
     if against:
         return f"{which} is rejected by: {'; '.join(against)}."
     if wrong:

@@ -137,7 +137,11 @@ def _settings(run: RunResult) -> Iterator[tuple[str, str]]:
 def _given(first: RunResult, second: RunResult) -> Html:
     mine, theirs = _given_to(first), _given_to(second)
     rows = [
-        (kind, (mine.get((kind, key)) or theirs[kind, key])[0], *(_said(each, kind, key) for each in (mine, theirs)))
+        (
+            kind,
+            (mine.get((kind, key)) or theirs[kind, key])[0],
+            *(_in_words(each, kind, key) for each in (mine, theirs)),
+        )
         for kind, key in dict.fromkeys((*mine, *theirs))
     ]
     differing = [row for row in rows if row[2] != row[3]]
@@ -154,5 +158,5 @@ def _given(first: RunResult, second: RunResult) -> Html:
     return join([remark, element("div", table, class_="wide-table")])
 
 
-def _said(given: _Given, kind: str, key: str) -> str:
+def _in_words(given: _Given, kind: str, key: str) -> str:
     return given[kind, key][1] if (kind, key) in given else _ABSENT

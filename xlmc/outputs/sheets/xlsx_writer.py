@@ -92,7 +92,7 @@ def write_blocks(page: Page, blocks: Iterable[Block], charting: Charting | None 
                 if charting and isinstance(picture, Chart) and isinstance(picture.data, Lines | Bars):
                     _write_chart(page, charting.book, picture, charting.numbers())
                 else:
-                    page.wide(f"{picture.said}.", "remark", last)
+                    page.wide(f"{picture.description}.", "remark", last)
                 if caption:
                     page.wide(caption, "remark", last)
             case Table():
@@ -190,7 +190,7 @@ def _cells(cell: Content, index: int, right: Collection[int]) -> Sequence[Shown]
         return cell.shown
     if isinstance(cell, Shown):
         return (cell,)
-    text = cell.said if isinstance(cell, Drawing | Chart) else cell
+    text = cell.description if isinstance(cell, Drawing | Chart) else cell
     if index not in right:
         return (Shown(text, look="name" if index == 0 else "text"),)
     try:
@@ -204,5 +204,5 @@ def _write_chart(page: Page, book: Workbook, chart: Chart, numbers: Page) -> Non
     made = native_chart(book, chart, write_series(numbers, chart))
     high = 110 + 24 * len(chart.data.bars) if isinstance(chart.data, Bars) else SIZE[1]
     made.set_size({"width": SIZE[0], "height": high})
-    page.sheet.insert_chart(page.row, 0, made, {"object_position": 1, "description": chart.said})
+    page.sheet.insert_chart(page.row, 0, made, {"object_position": 1, "description": chart.description})
     page.row += high // _PIXELS + 1

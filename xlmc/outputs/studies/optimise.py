@@ -150,7 +150,7 @@ def _without_number(result: Optimised) -> Iterator[str]:
         )
     if result.indifferent:
         yield "All candidates give the same: the decisions do not change what is asked for."
-    for name, text in result.unsaid:
+    for name, text in result.missing_texts:
         texts = ", ".join(f"“{each}”" for each in result.run.labels.get(name, ()))
         yield f"With these decisions no trial of {name} says “{text}”; its texts are {texts}."
 

@@ -22,7 +22,7 @@ __all__ = ["stress_report"]
 _DRAWN: Final = 12
 """Assumptions of a chart."""
 
-_TOLD: Final = 3
+_MOST_NAMED: Final = 3
 """Inputs that a sentence names."""
 
 
@@ -92,8 +92,8 @@ def _distinguishing(result: Stressed, scenario: Scenario) -> str:
     sure = [each for each in scenario.inputs if each.is_sure]
     if not sure:
         return f"{what}: no input has another median there than in all trials, as far as these tell."
-    named = "; ".join(f"{each.assumption} ({_shift(each.shift)} SD)" for each in sure[:_TOLD])
-    more = f"; and {count_text(len(sure) - _TOLD)} more" if len(sure) > _TOLD else ""
+    named = "; ".join(f"{each.assumption} ({_shift(each.shift)} SD)" for each in sure[:_MOST_NAMED])
+    more = f"; and {count_text(len(sure) - _MOST_NAMED)} more" if len(sure) > _MOST_NAMED else ""
     return f"{what} is distinguished by {named}{more}."
 
 

@@ -45,7 +45,7 @@ class Pair:
         limits: what each is compared with: its threshold, or where it has none its median, in the digits that its error
             supports.
         thresholds: whether each limit is a threshold.
-        said: each forecast with its limit, in words.
+        limit_texts: each forecast with its limit, in words.
         trials: in which both are numbers.
         both_above: P(first > its limit and second > its limit).
         either_above: P(first > its limit or second > its limit).
@@ -58,7 +58,7 @@ class Pair:
     second: Forecast
     limits: tuple[float, float]
     thresholds: tuple[bool, bool]
-    said: tuple[str, str]
+    limit_texts: tuple[str, str]
     trials: int
     both_above: Estimate
     either_above: Estimate
@@ -89,7 +89,7 @@ def _pair(simulation: RunResult, first: Forecast, second: Forecast) -> Pair | No
         second=second,
         limits=limits,
         thresholds=(first.threshold is not None, second.threshold is not None),
-        said=(_limit_text(simulation, first, limits[0]), _limit_text(simulation, second, limits[1])),
+        limit_texts=(_limit_text(simulation, first, limits[0]), _limit_text(simulation, second, limits[1])),
         trials=trials,
         both_above=counts.share(counts.both),
         either_above=counts.share(counts.either),

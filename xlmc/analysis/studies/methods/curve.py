@@ -29,7 +29,7 @@ _APART: Final = 1.5
 """The longest run of a line takes at least so many times what the shortest takes; of less, a slope is noise. Short runs
 all take the same time."""
 
-_SETTLED: Final = 20.0
+_CONVERGED: Final = 20.0
 """Accepted trials of a run, about; of fewer, quantiles lie between the same few numbers however they are drawn."""
 
 
@@ -223,7 +223,7 @@ def runs_of(budget: int, results: Sequence[MethodResult], reference: Reference) 
         acceptance=rms_of(np.array(accepted) - reference.acceptance.value) if accepted else None,
         effective=median(effective) if effective else None,
         failed=lost,
-        converged=budget * reference.acceptance.value >= _SETTLED,
+        converged=budget * reference.acceptance.value >= _CONVERGED,
     )
 
 

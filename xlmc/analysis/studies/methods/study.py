@@ -88,7 +88,7 @@ _RUNS_SECONDS, _LEAST_RUNS, _LEAST_OF_SLOW = 4.0, 6, 3
 each takes longer than all should.
 """
 
-_LEAST_TOLD: Final = 2
+_FEWEST_RUNS: Final = 2
 """Runs of each length, without which there is no error to tell."""
 
 _INTERRUPTED: Final = "the study was interrupted before it"
@@ -461,7 +461,7 @@ class _Measuring:
             self._patience = min(self._patience, self._left / len(results))
         self._steps.expect(self._replicates + 1)  # and the slow engine
         for replicate in range(self._replicates):
-            if self._over and replicate >= _LEAST_TOLD:
+            if self._over and replicate >= _FEWEST_RUNS:
                 break
             self._steps.begin(
                 f"runs of {count_text(self.ladder[0])} to {count_text(self.ladder[-1])} trials, "
@@ -490,7 +490,7 @@ class _Measuring:
             self._steps.begin(f"{method.name}, a first run")
             first = firsts[method.key] = self._try(method, self.ladder[0])
             usual = first
-            if first is not None and 1.0 < self._slowness(first) < _LEAST_TOLD * _FEWEST_LENGTHS / 2.0:
+            if first is not None and 1.0 < self._slowness(first) < _FEWEST_RUNS * _FEWEST_LENGTHS / 2.0:
                 usual = self._try(method, self.ladder[0])  # the first may have compiled or learned something
             if first is not None and usual is not None and self._slowness(usual) > 1.0 and method is not MONTE_CARLO:
                 self.absent[method.name] = (
@@ -504,7 +504,7 @@ class _Measuring:
 
     def _slowness(self, result: MethodResult) -> float:
         """Return how many times what the limit has for a method the runs that are needed would take."""
-        return result.seconds * _LEAST_TOLD * _FEWEST_LENGTHS / (_METHOD_SHARE * self._limit)
+        return result.seconds * _FEWEST_RUNS * _FEWEST_LENGTHS / (_METHOD_SHARE * self._limit)
 
     def _run_all(
         self,
@@ -530,7 +530,7 @@ class _Measuring:
         """Run Monte Carlo as often as any answer needs, if it was not."""
         for number, budget in enumerate(self.ladder[:_FEWEST_LENGTHS]):
             known = results[MONTE_CARLO.key, budget]
-            while len(known) < _LEAST_TOLD:
+            while len(known) < _FEWEST_RUNS:
                 known.append(self._run(MONTE_CARLO, budget, self._seed_of(number, len(known))))
 
     def _keep_complete(self, able: Sequence[Method], results: dict[tuple[str, int], list[MethodResult]]) -> None:
@@ -539,7 +539,7 @@ class _Measuring:
         """
 
         def ran(method: Method) -> int:
-            return next((n for n, b in enumerate(self.ladder) if len(results[method.key, b]) < _LEAST_TOLD), LENGTHS)
+            return next((n for n, b in enumerate(self.ladder) if len(results[method.key, b]) < _FEWEST_RUNS), LENGTHS)
 
         for method in able:
             if ran(method) < _FEWEST_LENGTHS:
@@ -556,7 +556,7 @@ class _Measuring:
         spent = sum(result.seconds for result in known)
         least = _LEAST_RUNS if spent <= len(known) * self._patience else _LEAST_OF_SLOW
         if np.isfinite(self._limit):
-            least = _LEAST_TOLD
+            least = _FEWEST_RUNS
         return len(known) >= least and spent > self._patience
 
     def _run(self, method: Method, budget: int, seed: int) -> MethodResult:

@@ -174,8 +174,8 @@ class Space:
 
     def allows(self, candidate: Values) -> bool:
         """Whether what is required of decisions alone is met."""
-        held = all(each.holds_for(candidate) for each in self.requirements)
-        return held and not self._beyond(candidate)
+        meets = all(each.holds_for(candidate) for each in self.requirements)
+        return meets and not self._beyond(candidate)
 
     def _beyond(self, candidate: Values) -> float:
         """Return how far computed decisions lie beyond their ranges, as shares of these; added up."""

@@ -130,7 +130,7 @@ class Optimised(Shown):
         allowed: the share that they may take.
         numberless: candidates that give no number, though errors take few of their trials.
         indifferent: whether all candidates give the same goal.
-        unsaid: texts that are asked for, and that the best decisions' run does not say: forecast and text.
+        missing_texts: texts that are asked for, and that the best decisions' run does not say: forecast and text.
         excluded: the candidates of which errors take clearly more, the share, and whether the trials that are left make
             it better than the best by more than the indifference; those first, then the others.
     """
@@ -156,7 +156,7 @@ class Optimised(Shown):
     allowed: float
     numberless: int
     indifferent: bool
-    unsaid: tuple[tuple[str, str], ...]
+    missing_texts: tuple[tuple[str, str], ...]
     excluded: tuple[Excluded, ...]
 
     @property
@@ -384,7 +384,7 @@ def _result(requirement: Requirement, columns: Floats, best: Values, n: int) -> 
 class _Odd(TypedDict):
     numberless: int
     indifferent: bool
-    unsaid: tuple[tuple[str, str], ...]
+    missing_texts: tuple[tuple[str, str], ...]
 
 
 def _what_is_odd(tried: Tried, run: RunResult, reader: Reader) -> _Odd:
@@ -396,7 +396,7 @@ def _what_is_odd(tried: Tried, run: RunResult, reader: Reader) -> _Odd:
     return {
         "numberless": sum(math.isnan(each.goal.value) and not each.excess for each in known),
         "indifferent": len(known) > 1 and len(goals) == 1 and not any(map(math.isnan, goals)),
-        "unsaid": tuple((name, text) for name, text in asked if text not in run.labels.get(name, ())),
+        "missing_texts": tuple((name, text) for name, text in asked if text not in run.labels.get(name, ())),
     }
 
 

@@ -34,7 +34,7 @@ _LEFT: Final = 0.1
 _NEAREST: Final = 20
 """Trials nearest to where the condition changes."""
 
-_TOLD: Final = 0.01
+_LEAST_SHARE: Final = 0.01
 """A share of the cell's central range: a smaller jump is not reported."""
 
 
@@ -233,7 +233,7 @@ def _of_choice(case: Case, cell: Cell, part: ir.Call) -> Finding | None:
     drawn = known & (np.arange(case.n) >= case.special)
     nearest = np.argsort(np.where(drawn if drawn.any() else known, np.abs(gap), np.inf))[:_NEAREST]
     share = float(np.median(np.abs(yes - no)[nearest])) / case.scale(cell)
-    if share < _TOLD:
+    if share < _LEAST_SHARE:
         return None
     near = np.zeros(case.n, bool)
     near[nearest] = True

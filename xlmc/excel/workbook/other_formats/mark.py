@@ -13,11 +13,11 @@ __all__ = ["converted_from", "other_format_notices", "with_mark"]
 _PROPERTIES: Final = "docProps/core.xml"
 """The part that holds the mark, as a comment. xlmc keeps it; a program that saves the workbook drops the mark."""
 
-_SAID: Final = "xlmc: converted from"
+_OPENING: Final = "xlmc: converted from"
 _MACROS: Final = ", without its macros"
 _MARK: Final = re.compile(
     rb"<!--%b (?P<what>%b) by (?P<by>LibreOffice[/\d.]*)(?P<macros>%b)?-->"
-    % (_SAID.encode(), b"|".join(re.escape(each.noun.encode()) for each in FORMATS), _MACROS.encode())
+    % (_OPENING.encode(), b"|".join(re.escape(each.noun.encode()) for each in FORMATS), _MACROS.encode())
 )
 _VERSION: Final = re.compile(rb"<Application>(LibreOffice/[\d.]+)")
 
@@ -27,7 +27,7 @@ def with_mark(parts: Mapping[str, bytes], form: OtherFormat, macros: bool) -> di
     if _PROPERTIES not in parts:
         return dict(parts)
     by = _VERSION.search(parts.get("docProps/app.xml", b""))
-    mark = f"<!--{_SAID} {form.noun} by {by[1].decode() if by else 'LibreOffice'}{_MACROS * macros}-->"
+    mark = f"<!--{_OPENING} {form.noun} by {by[1].decode() if by else 'LibreOffice'}{_MACROS * macros}-->"
     return {**parts, _PROPERTIES: parts[_PROPERTIES] + mark.encode()}
 
 

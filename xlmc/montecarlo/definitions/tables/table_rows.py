@@ -41,7 +41,7 @@ __all__ = [
 
 _MISSPELT = 0.85  # likeness above which a heading is taken for one that the table lacks
 
-_TOLD = frozenset({"units", "source", "because"})
+_REMARKS = frozenset({"units", "source", "because"})
 """Columns that are only shown: a slip in their heading changes no number."""
 
 _MOST_NAMED: Final = 4
@@ -140,7 +140,7 @@ def _point_out_slips(
     workbook: Workbook, table: DefinitionTable, known: tuple[str, ...], required: tuple[str, ...], findings: Findings
 ) -> None:
     spellings = {plain(heading) for heading in known}
-    missing = [heading for heading in known if plain(heading) not in table.columns and plain(heading) not in _TOLD]
+    missing = [heading for heading in known if plain(heading) not in table.columns and plain(heading) not in _REMARKS]
     missing = [heading for heading in missing if heading not in required]  # `_complete` tells of these
     for spelling, (written, number) in table.columns.items():
         slip = None if spelling in spellings else nearest(written, known, NEAR_MISS)

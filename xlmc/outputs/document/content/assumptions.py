@@ -15,7 +15,7 @@ from xlmc.outputs.document.cells import NONE, Shown
 from xlmc.outputs.document.charts import shape_chart
 from xlmc.outputs.document.measured import Measured
 from xlmc.outputs.document.parts import Block, Content, Paragraph, Table, cell_text
-from xlmc.outputs.filter_effect import filter_effect_of, told_of_prior
+from xlmc.outputs.filter_effect import draws_of_prior, filter_effect_of
 
 if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Assumption
@@ -62,7 +62,7 @@ def meaning_of_marks() -> str:
 
 def assumption_remarks(simulation: RunResult) -> Iterator[str]:
     """Yield the sentences that say which trials the numbers are from."""
-    early = told_of_prior(simulation)
+    early = draws_of_prior(simulation)
     which = "Before filtering: t" if simulation.filters_act else "T"
     first = "trial" if early == 1 else f"{count_text(early)} trials"
     yield f"{which}he first {first}. ± is the standard error."

@@ -52,7 +52,7 @@ def section(material: Material) -> Iterator[Block]:
             f"{central_text(row)}{units}.{wide}"
         )
         if row.is_share:
-            caption = f"{figure.name}: {figure.said}."
+            caption = f"{figure.name}: {figure.description}."
         if bins.counted < row.trials:
             caption += f" Trials are weighted: the figure shows {counted_text(bins.counted, 'trial')} of equal weight."
         if bins.below or bins.above:

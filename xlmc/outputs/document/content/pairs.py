@@ -33,7 +33,7 @@ def pair_blocks(simulation: RunResult, pairs: Sequence[Pair]) -> Iterator[Block]
 
 def _row(pair: Pair) -> tuple[Content, ...]:
     return (
-        *pair.said,
+        *pair.limit_texts,
         counted_share(pair.both_above),
         Measured(pair.either_above, "share"),
         Measured(pair.first_greater, "share", nothing=NONE),

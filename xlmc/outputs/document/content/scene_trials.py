@@ -20,5 +20,5 @@ def section(material: Material) -> Iterator[Block]:
     if drawn is not None:
         yield Figure(
             drawn,
-            f"{drawn.said}: the curves are those of the workbook's chart, as it stored them.",
+            f"{drawn.description}: the curves are those of the workbook's chart, as it stored them.",
         )

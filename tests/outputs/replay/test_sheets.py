@@ -229,6 +229,11 @@ def test_the_share_of_cells_that_two_sheets_have_in_common(workbook, file, share
     assert _share(workbook({}).sheets["S"], built) == 0
 
 
+def test_a_number_that_another_program_wrote_with_15_digits_is_the_same(workbook):
+    built, file = (workbook({"A1": number}).sheets["S"] for number in (0.12345678901234568, 0.123456789012346))
+    assert _share(built, file) == 1
+
+
 def test_some_hundreds_of_cells_of_a_long_sheet_are_looked_at(workbook):
     long, odd = ({f"A{row}": float(row) for row in range(1, 1202)} for _ in range(2))
     for row in range(1, 1202, 2):

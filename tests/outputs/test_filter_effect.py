@@ -75,8 +75,8 @@ def test_without_filters_each_assumption_is_sorted_once(make, monkeypatch, packa
 
 @pytest.mark.parametrize(("count", "messages"), [(DRAWN, 20_000), (DRAWN + 1, 10_000), (DRAWN + 20, 9_000)])
 def test_of_many_assumptions_fewer_draws_before_filtering_are_summarised(make, monkeypatch, count, messages):
-    monkeypatch.setattr(module, "_TOLD", 10_000 * (DRAWN + 1) + 5)
-    monkeypatch.setattr(module, "_LEAST_TOLD", 9_000)
+    monkeypatch.setattr(module, "_MOST_DRAWS", 10_000 * (DRAWN + 1) + 5)
+    monkeypatch.setattr(module, "_FEWEST_DRAWS", 9_000)
     cells = {f"A{k}": 0.5 for k in range(1, count + 1)} | {"B1": f"=SUM(A1:A{count})"}
     assumptions = [make.uniform(f"a{k}", f"A{k}", 0.0, 1.0) for k in range(1, count + 1)]
     run = make.simulate(cells, assumptions, [make.forecast("sum", "B1")], trials=20_000)

@@ -154,7 +154,7 @@ def test_what_is_not_taken_apart(dag, monkeypatch):
     assert cell_by_cell(dag, (row, column), pairs(dag)) is None
     assert cells(dag, cell_by_cell(dag, (row, column), pairs(dag), constants=True)) == [[2, 3, 4], [5, 6, 7]]
     assert dag.sizes[cell_by_cell(dag, (row, x), pairs(dag))] == (1, 3)
-    monkeypatch.setattr(arrays, "_LARGEST", 5)
+    monkeypatch.setattr(arrays, "LARGEST", 5)
     assert dag.sizes[cell_by_cell(dag, (row, x), pairs(dag))] == (1, 3)
     assert cell_by_cell(dag, (row, column, x), pairs(dag)) is None
     with pytest.raises(FormulaError, match="6 cells would each make an array"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import signal
+from importlib import import_module
 
 import pytest
 
@@ -177,6 +178,18 @@ def test_a_search_for_lost_digits_that_is_interrupted(book):
     assert messages[-1].startswith("lost digits (4 of about 12")
     whole = stability(model, trials=500, seed=1)
     assert (whole.ended, whole.not_looked_for) == ("", ())
+
+
+def test_a_search_for_lost_digits_does_not_end_its_step_first(book, monkeypatch):
+    def endless(case):
+        signal.raise_signal(signal.SIGINT)
+        raise AssertionError("the step goes on")
+
+    monkeypatch.setitem(import_module("xlmc.analysis.studies.stability.find")._DETECTORS, "lost digits", endless)
+    model = book({"A1": 1.5, "B1": "=A1*2"}, {"x": {"cell": "A1", "low": 1, "high": 2}}, {"f": "B1"}, {})
+    result = stability(model, trials=500, seed=1)
+    assert result.ended.startswith("it was interrupted after 4 of about ")
+    assert result.not_looked_for[:2] == ("lost digits", "heavy tails")
 
 
 def test_a_search_for_causes_that_is_interrupted(book):

@@ -439,11 +439,17 @@ class _Screen:
             model, trials=settings.trials, seed=settings.seed, engine=self._engine, jobs=self._jobs, keep_inputs=0
         )
 
-    def _compare(self, names: tuple[str, ...], run: RunResult, only: Collection[str] | None = None) -> Cost:
-        """Compare a run with that of the book as it is; the answers beside `only` are taken for unchanged."""
+    def _compare(
+        self, names: tuple[str, ...], run: RunResult, only: Collection[str] | None = None, *, distances: bool = True
+    ) -> Cost:
+        """Compare a run with that of the book as it is; the answers beside `only` are taken for unchanged.
+
+        `distances` of the distribution functions are not wanted of what nobody is told.
+        """
         accepted = acceptance(self._run, run)
         result = {
-            f.name: self._difference(f, run if only is None or f.name in only else self._run) for f in self._judged
+            f.name: self._difference(f, run if only is None or f.name in only else self._run, distances=distances)
+            for f in self._judged
         }
         limits = {name: each.tolerances(self._tolerances[name][0], self._chance) for name, each in result.items()}
         sizes = {
@@ -455,18 +461,18 @@ class _Screen:
         size = max(in_tolerances(*each) for each in sizes.values())
         return Cost(names, accepted, result, judge(sizes), size)
 
-    def _difference(self, forecast: Forecast, run: RunResult) -> Difference:
+    def _difference(self, forecast: Forecast, run: RunResult, *, distances: bool = True) -> Difference:
         """Compare a forecast; what the change does not reach, most of the answers of a large book, only once."""
         name, first = forecast.name, self._accepted[forecast.name]
 
-        def compared(second: Accepted) -> Difference:
+        def compared(second: Accepted, *, distances: bool = True) -> Difference:
             form = self._run.results[name].form
-            return difference(first, second, forecast.central, forecast.threshold, form)
+            return difference(first, second, forecast.central, forecast.threshold, form, distances=distances)
 
         own = self._run.forecasts[name]
         same = np.array_equal(run.trial_index, self._run.trial_index)
         if first.is_share or not same or not np.array_equal(run.forecasts[name], own, equal_nan=True):
-            return compared(Accepted.of_run(run, name))
+            return compared(Accepted.of_run(run, name), distances=distances)
         if name not in self._as_it_is:
             self._as_it_is[name] = compared(first)
         return self._as_it_is[name]
@@ -536,7 +542,7 @@ class _Screen:
         if len(round_) == 1:
             return [replace(self._freeze(held), names=round_[0])]
         run = self._run_with(held, (), f"{len(held)} held, {len(round_)} of them apart from each other")
-        return [self._compare(names, run, self._reached(names)) for names in round_]
+        return [self._compare(names, run, self._reached(names), distances=not also) for names in round_]
 
     def _correlated(self, single: Sequence[Cost], at_once: Sequence[str]) -> list[tuple[str, ...]]:
         """Return groups of correlated assumptions with one at least that cannot be held alone."""

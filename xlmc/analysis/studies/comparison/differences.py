@@ -158,7 +158,13 @@ def _relative(both: int, mine: int, theirs: int) -> Estimate:
 
 
 def difference(
-    first: Accepted, second: Accepted, share: float, threshold: float | None = None, form: Form = PLAIN
+    first: Accepted,
+    second: Accepted,
+    share: float,
+    threshold: float | None = None,
+    form: Form = PLAIN,
+    *,
+    distances: bool = True,
 ) -> Difference:
     """Compare a forecast in two runs over the same trials.
 
@@ -168,6 +174,7 @@ def difference(
         share: of the trials, held by the central range.
         threshold: what P(> threshold) is compared for; None for no such number.
         form: how the first's numbers are written.
+        distances: whether those of the distribution functions are wanted, which take most of the time; NaN if not.
     """
     first, second = in_one_code(first, second)
     pair = Pair(first, second)
@@ -185,15 +192,16 @@ def difference(
     mean = change(mean_of(first), mean_of(second))
     deviation = change(standard_deviation_of(first), standard_deviation_of(second))
     yes_no = first.sample.yes_no and second.sample.yes_no
-    curves = None if yes_no else _Curves.of(pair)
+    curves = None if yes_no or not distances else _Curves.of(pair)
+    apart = _distance_of_shares(mean.difference) if yes_no else Estimate(np.nan)
     return Difference(
         mean=mean,
         standard_deviation=replace(deviation, difference=_of_deviations(deviation)) if yes_no else deviation,
         low=change(quantile_of(first, tail), quantile_of(second, tail)),
         high=change(quantile_of(first, 1.0 - tail), quantile_of(second, 1.0 - tail)),
         share=share,
-        kolmogorov=_distance_of_shares(mean.difference) if curves is None else _kolmogorov(pair, curves),
-        wasserstein=_distance_of_shares(mean.difference) if curves is None else _wasserstein(pair, curves),
+        kolmogorov=apart if curves is None else _kolmogorov(pair, curves),
+        wasserstein=apart if curves is None else _wasserstein(pair, curves),
         largest=float(np.abs(pair.apart).max()) if pair.apart.size else float("nan"),
         typical=float(np.sqrt(np.mean(pair.apart**2))) if pair.apart.size else float("nan"),
         threshold=threshold,

@@ -88,12 +88,14 @@ def stability(
         left = dict(_DETECTORS)
         for name, detector in steps.each(_DETECTORS.items()):
             steps.begin(name)
-            findings += detector(case)
-            del left[name]
+            with steps.left_at_once():
+                findings += list(detector(case))
+                del left[name]
         cells: tuple[CellDigits, ...] = ()
         if not steps.ended:
             steps.begin("what every cell amplifies")
-            cells = tuple(cell_digits(case))
+            with steps.left_at_once():
+                cells = tuple(cell_digits(case))
         ended = steps.why_ended if left or not cells else ""
     ranked = sorted(
         as_one(case, _first_causes(case, findings), _OF_DIGITS), key=lambda finding: (finding.level, -finding.size)

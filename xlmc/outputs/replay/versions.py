@@ -257,7 +257,9 @@ RULES: Final = (
     Rule("0.12.0", "data tables that hold other values than their formulas give are computed", _ANY),
     Rule("0.12.0", "adjustment weights of matrices of rank correlations are honoured", _calls("RiskCorrmat")),
     Rule("0.12.0", "an answer made of tests, 1 and 0 is a yes/no answer where it never varies, too", _COMPARED),
-    Rule("0.12.0", "INDEX of several areas takes an empty last argument for 0 wherever its row varies", _calls("INDEX")),
+    Rule(
+        "0.12.0", "INDEX of several areas takes an empty last argument for 0 wherever its row varies", _calls("INDEX")
+    ),
     Rule("0.12.0", "of more than 100 assumptions, fewer draws before filtering are summarised", _ANY),
     Rule(
         "0.12.0",

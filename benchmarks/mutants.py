@@ -144,24 +144,24 @@ def _other_constant(value: object) -> str:
     return repr(value * 1.5 if value else 1.0) if isinstance(value, float) else ""
 
 
-def tests_of(path: Path) -> list[list[str]]:
-    """Return what pytest is given for a module in turn, no file twice.
+def tests_of(path: Path, root: Path) -> list[list[str]]:
+    """Return what pytest is given for a module of a repository at `root` in turn, no file twice.
 
     First its examples and own tests, then tests near by of what imports it, its folder, and the folder above.
     """
     own = own_tests(path)
     folder = own.parent
-    while not any((ROOT / folder).glob("test_*.py")) and folder != Path("tests"):
+    while not any((root / folder).glob("test_*.py")) and folder != Path("tests"):
         folder = folder.parent
-    examples = [path] if (ROOT / path).exists() and ">>>" in (ROOT / path).read_text(encoding="utf-8") else []
-    stages = [[*examples, *([own] if (ROOT / own).exists() else [])]]
+    examples = [path] if (root / path).exists() and ">>>" in (root / path).read_text(encoding="utf-8") else []
+    stages = [[*examples, *([own] if (root / own).exists() else [])]]
     if folder != Path("tests"):
         wide = folder if folder.parent == Path("tests") else folder.parent
         module = re.compile(rf"^(from|import) {re.escape('.'.join(path.with_suffix('').parts))} ", re.MULTILINE)
-        near = [each.relative_to(ROOT) for each in sorted((ROOT / wide).rglob("test_*.py"))]
-        layer = (each.relative_to(ROOT) for each in sorted((ROOT / "xlmc" / wide.relative_to("tests")).rglob("*.py")))
-        users = {own_tests(each) for each in layer if module.search((ROOT / each).read_text(encoding="utf-8"))}
-        importing = [each for each in near if module.search((ROOT / each).read_text(encoding="utf-8"))]
+        near = [each.relative_to(root) for each in sorted((root / wide).rglob("test_*.py"))]
+        layer = (each.relative_to(root) for each in sorted((root / "xlmc" / wide.relative_to("tests")).rglob("*.py")))
+        users = {own_tests(each) for each in layer if module.search((root / each).read_text(encoding="utf-8"))}
+        importing = [each for each in near if module.search((root / each).read_text(encoding="utf-8"))]
         stages.append([*importing, *(each for each in near if each in users)])
         stages.append(sorted((each for each in near if folder in each.parents), key=lambda each: len(each.parts)))
         stages.append([each for each in near if each.parent == wide])
@@ -222,7 +222,7 @@ def fate(mutant: Mutant, copy: Path, seconds: float, kills: Counter[str] | None 
     """
     kills = Counter() if kills is None else kills
     file, ends = copy / mutant.path, processor_time() + seconds
-    tests = tests_of(mutant.path)
+    tests = tests_of(mutant.path, copy)  # the repository itself may have changed meanwhile
     source = file.read_text(encoding="utf-8")
     file.write_text(mutant.text(source), encoding="utf-8")
     try:

@@ -67,7 +67,7 @@ def test_a_mutant_is_one_change_of_what_is_run():
     ],
 )
 def test_the_tests_of_a_module_are_those_that_mirror_it(module, first):
-    tests = [each for group in mutants.tests_of(Path(module)) for each in group]
+    tests = [each for group in mutants.tests_of(Path(module), mutants.ROOT) for each in group]
     assert len(tests) == len({*tests})
     if first is None:
         assert not tests
@@ -78,8 +78,7 @@ def test_the_tests_of_a_module_are_those_that_mirror_it(module, first):
         }
 
 
-def test_tests_near_by_that_import_a_module_come_before_its_folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(mutants, "ROOT", tmp_path)
+def test_tests_near_by_that_import_a_module_come_before_its_folder(tmp_path):
     for name, text in [
         ("tests/excel/functions/test_few.py", ""),
         ("tests/excel/functions/test_own.py", "from xlmc.excel.functions.few import f\n"),
@@ -95,7 +94,8 @@ def test_tests_near_by_that_import_a_module_come_before_its_folder(tmp_path, mon
     ]:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text(text, encoding="utf-8")
-    assert [[Path(each).name for each in group] for group in mutants.tests_of(Path("xlmc/excel/functions/few.py"))] == [
+    tests = mutants.tests_of(Path("xlmc/excel/functions/few.py"), tmp_path)
+    assert [[Path(each).name for each in group] for group in tests] == [
         ["test_few.py"],
         ["test_own.py", "test_near.py", "test_user.py"],
         ["test_other.py", "test_deep.py"],
@@ -106,8 +106,7 @@ def test_tests_near_by_that_import_a_module_come_before_its_folder(tmp_path, mon
 @pytest.mark.parametrize(
     ("change", "end"), [(("True", "False"), "killed"), (("False", "True"), "survived")], ids=["killed", "survived"]
 )
-def test_a_mutant_that_a_test_finds_is_killed(tmp_path, monkeypatch, change, end):
-    monkeypatch.setattr(mutants, "ROOT", tmp_path)
+def test_a_mutant_that_a_test_finds_is_killed(tmp_path, change, end):
     (tmp_path / "xlmc").mkdir()
     (tmp_path / "tests").mkdir()
     source = "SEEN = True\nUNSEEN = False\n"
@@ -139,14 +138,13 @@ def test_bytecode_is_kept_once_and_never_that_of_another_text(tmp_path):
 
 
 def test_of_tests_that_are_equally_near_those_that_killed_most_come_first(tmp_path, monkeypatch):
-    monkeypatch.setattr(mutants, "ROOT", tmp_path)
     given = []
     ends = {"a": set(), "b": {"tests/excel/test_z.py::test_z[x]"}}
     monkeypatch.setattr(mutants, "failures", lambda tests, copy, seconds, *_: given.append(tests) or ends[copy.name])
-    for name in ("tests/excel/test_few.py", "tests/excel/test_y.py", "tests/excel/test_z.py"):
-        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
-        (tmp_path / name).touch()
     for copy in ("a", "b"):
+        (tmp_path / copy / "tests" / "excel").mkdir(parents=True)
+        for name in ("test_few.py", "test_y.py", "test_z.py"):
+            (tmp_path / copy / "tests" / "excel" / name).touch()
         (tmp_path / copy / "xlmc" / "excel").mkdir(parents=True)
         (tmp_path / copy / "xlmc" / "excel" / "few.py").write_text("SEEN = 1\n", encoding="utf-8")
     kills = mutants.Counter()

@@ -122,8 +122,8 @@ class XlmcError(Exception):
 def shortened(text: str) -> str:
     """Cut a text that may quote a file after 500 characters, so that a message stays one.
 
-    >>> len(shortened("x" * 10_000))
-    501
+    >>> len(shortened("x" * 500)), len(shortened("x" * 501)), shortened("x" * 501)[-2:]
+    (500, 501, 'x…')
     """
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]}…"
 

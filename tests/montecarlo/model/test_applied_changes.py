@@ -279,10 +279,9 @@ def test_a_draw_in_a_cell(tmp_path, subtests):
         ([Measured(TANGENT, {"reading": 0.3})], f"{TANGENT!r} is a filter, and has no reading"),
         ([Measured("laser", {"reading": 0.3})], "there is no evidence 'laser'"),
         ([Stated("Nisan impact speed", {"threshold": 3.0})], "there is no forecast 'Nisan impact speed'"),
-        (
-            [Stated("Nissan impact speed", {"central": 0.5})],
-            "a central range of 0.5 % of 'Nissan",
-        ),
+        ([Stated("Nissan impact speed", {"central": 0.5})], "a central range of 0.5 % of 'Nissan"),
+        ([Stated("Nissan impact speed", {"central": 1.0})], "must be above 1 and below 100"),
+        ([Stated("Nissan impact speed", {"central": 100.0})], "must be above 1 and below 100"),
     ],
 )
 def test_what_cannot_be_changed(case, changes, message):

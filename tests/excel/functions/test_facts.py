@@ -72,6 +72,7 @@ LISTS = {
     ("engine/graph/reference_functions.py", "_count"): "what REFERENCE_FUNCTIONS has",
     ("engine/graph/computed_references.py", "REFERENCES"): "any other function gives values, not references",
     ("engine/graph/number_lookups.py", "_FORMS"): "any other function is computed on values of any kind",
+    ("engine/graph/constant_sums.py", "SUMS"): "any other function is no sum of a product's cells",
     ("engine/graph/running_totals.py", "FOLDS"): "any other function is computed of each range by itself",
     (
         "engine/graph/running_totals.py",

@@ -58,7 +58,7 @@ FULL = ("the disk is full", "no space left on the disk", "larger than may be wri
 
 
 @dataclass
-class Found:
+class CampaignResult:
     """What came of a campaign: how often each end was met, and what was broken."""
 
     ends: Counter[str] = field(default_factory=Counter)
@@ -162,7 +162,7 @@ _CALLS = frozenset(
 )
 
 
-def killed(writers: Writers, kind: str, at: random.Random, result: Found) -> None:
+def killed(writers: Writers, kind: str, at: random.Random, result: CampaignResult) -> None:
     """Kill a process that writes files of this kind one after the other; then look, and write once more."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -206,7 +206,7 @@ def _write_once(writers: Writers, kind: str, path: Path) -> None:
         writers.write(kind, 1, path)
 
 
-def _check_strays(kind: str, path: Path, result: Found, when: str) -> None:
+def _check_strays(kind: str, path: Path, result: CampaignResult, when: str) -> None:
     result.broken.extend(f"{kind}: {left.name} left {when}" for left in path.parent.iterdir() if left != path)
 
 
@@ -224,7 +224,7 @@ def small_disk(size: int) -> Iterator[Path | None]:
             subprocess.run(["umount", folder], check=True)
 
 
-def full_disk(writers: Writers, kind: str, at: random.Random, result: Found, disk: Path | None) -> None:
+def full_disk(writers: Writers, kind: str, at: random.Random, result: CampaignResult, disk: Path | None) -> None:
     """Write where there is room for a part only; the old file is whole afterwards, and the person was told."""
     size = 1 << 20 if kind == COLUMNS else max(map(len, writers.contents(kind)))
     room = at.randint(0, size + size // 3)
@@ -258,7 +258,7 @@ def _fill(disk: Path, room: int) -> Path:
     return filler
 
 
-def _check_full(writers: Writers, kind: str, path: Path, code: int, result: Found) -> None:
+def _check_full(writers: Writers, kind: str, path: Path, code: int, result: CampaignResult) -> None:
     result.ends[{TOLD: "told that it is full", 0: "there was room"}.get(code, f"exit code {code}")] += 1
     if code not in (0, TOLD):
         result.broken.append(f"{kind}: exit code {code} on a full disk")
@@ -267,9 +267,9 @@ def _check_full(writers: Writers, kind: str, path: Path, code: int, result: Foun
     _check_strays(kind, path, result, "on a full disk")
 
 
-def campaign(writers: Writers, kills: int, disks: int, seed: int) -> tuple[Found, Found]:
+def campaign(writers: Writers, kills: int, disks: int, seed: int) -> tuple[CampaignResult, CampaignResult]:
     """So many kills and full disks, over all kinds of output in turn."""
-    at, of_kills, of_disks = random.Random(seed), Found(), Found()
+    at, of_kills, of_disks = random.Random(seed), CampaignResult(), CampaignResult()
     for number in range(kills):
         killed(writers, KINDS[number % len(KINDS)], at, of_kills)
     with small_disk(16 << 20) as disk:

@@ -116,17 +116,17 @@ def baseline(recording: Path, target: Path) -> float:
     options = {"in_memory": True, "strings_to_formulas": False, "strings_to_urls": False}
     objects: dict[int, Any] = {0: Workbook(target, options)}
     for number, name, arguments, named, made in calls:
-        given = [_found(a, objects) for a in arguments]
+        given = [_object_of(a, objects) for a in arguments]
         if name == "write_numbers":  # a method of xlmc's own
             row, column, values, style = given
             for at, value in enumerate(values, row):
                 objects[number].write_number(at, column, value, style)
             continue
-        objects[made] = getattr(objects[number], name)(*given, **{k: _found(v, objects) for k, v in named.items()})
+        objects[made] = getattr(objects[number], name)(*given, **{k: _object_of(v, objects) for k, v in named.items()})
     return reading
 
 
-def _found(argument: Any, objects: dict[int, Any]) -> Any:
+def _object_of(argument: Any, objects: dict[int, Any]) -> Any:
     return objects[argument.number] if isinstance(argument, Made) else argument
 
 

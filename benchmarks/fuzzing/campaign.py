@@ -16,7 +16,7 @@ from fuzzing.child import Outcome, serve
 from fuzzing.inputs import Kind, Reached, generator
 from fuzzing.verdict import Finding
 
-__all__ = ["LONGEST", "Found", "Summary", "campaign"]
+__all__ = ["LONGEST", "Findings", "Summary", "campaign"]
 
 LONGEST: Final = 30.0
 """Seconds of processor time that an input may take."""
@@ -29,7 +29,7 @@ _WAITS: Final = 4.0
 
 
 @dataclass(slots=True)
-class Found:
+class Findings:
     """All findings of one key: how many, and the first."""
 
     first: Outcome
@@ -45,7 +45,7 @@ class Summary:
     reached: Counter[Reached] = field(default_factory=Counter)
     slowest: tuple[float, int] = (0.0, -1)
     largest: tuple[int, int] = (0, -1)
-    faults: dict[str, Found] = field(default_factory=dict)
+    faults: dict[str, Findings] = field(default_factory=dict)
 
     def add(self, outcome: Outcome) -> None:
         """Count one outcome."""
@@ -55,7 +55,7 @@ class Summary:
         self.slowest = max(self.slowest, (outcome.seconds, outcome.number))
         self.largest = max(self.largest, (outcome.memory, outcome.number))
         if outcome.finding is not None:
-            self.faults.setdefault(outcome.finding.key, Found(outcome)).count += 1
+            self.faults.setdefault(outcome.finding.key, Findings(outcome)).count += 1
 
     def line(self) -> str:
         """For the table at the end."""

@@ -14,7 +14,7 @@ import pytest
 from faults import (
     COLUMNS,
     KINDS,
-    Found,
+    CampaignResult,
     _check_full,
     _check_strays,
     _write_limited,
@@ -53,7 +53,7 @@ def test_a_writer_killed_at_any_call_leaves_a_whole_file(tmp_path, call):
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_kill_while_a_kind_of_output_is_written_breaks_nothing(writers, kind, tmp_path):
-    path, result = tmp_path / f"out{ENDING.get(kind, '.xlsx')}", Found()
+    path, result = tmp_path / f"out{ENDING.get(kind, '.xlsx')}", CampaignResult()
     if kind in ("Parquet", COLUMNS):
         path = tmp_path / ("out.parquet" if kind == "Parquet" else "out.")
     if kind != COLUMNS:
@@ -75,7 +75,7 @@ def test_a_kill_while_a_kind_of_output_is_written_breaks_nothing(writers, kind, 
 @pytest.mark.parametrize("kind", KINDS)
 def test_a_full_disk_breaks_nothing_and_is_told(writers, kind, tmp_path):
     """By a limit on the size of files, which anybody can set."""
-    path, result = tmp_path / f"out{ENDING.get(kind, '.xlsx')}", Found()
+    path, result = tmp_path / f"out{ENDING.get(kind, '.xlsx')}", CampaignResult()
     if kind in ("Parquet", COLUMNS):
         path = tmp_path / ("out.parquet" if kind == "Parquet" else "out.")
     if kind != COLUMNS:
@@ -87,7 +87,7 @@ def test_a_full_disk_breaks_nothing_and_is_told(writers, kind, tmp_path):
 
 
 def test_the_campaign_of_full_disks_runs_where_none_can_be_mounted(writers):
-    result = Found()
+    result = CampaignResult()
     fill_up(writers, "CSV", random.Random(1), result, None)
     assert result.broken == []
 

@@ -15,7 +15,7 @@ NOT_LOOKED_INTO = {
 """Caches; neither is a virtual environment looked into."""
 
 Tree = dict[str, tuple[int, int]]
-_FOUND = pytest.StashKey[Tree]()
+_BEFORE = pytest.StashKey[Tree]()
 _CHANGES = pytest.StashKey[list[str]]()
 
 
@@ -47,12 +47,12 @@ def changes(before: Tree, after: Tree) -> list[str]:
 
 def pytest_sessionstart(session: pytest.Session) -> None:
     if not hasattr(session.config, "workerinput"):  # one look for all processes
-        session.config.stash[_FOUND] = snapshot(session.config.rootpath)
+        session.config.stash[_BEFORE] = snapshot(session.config.rootpath)
 
 
 @pytest.hookimpl(trylast=True)  # when the workers are done
 def pytest_sessionfinish(session: pytest.Session) -> None:
-    result = session.config.stash.get(_FOUND, None)
+    result = session.config.stash.get(_BEFORE, None)
     if result is not None:
         session.config.stash[_CHANGES] = message = changes(result, snapshot(session.config.rootpath))
         if message and session.exitstatus in (pytest.ExitCode.OK, pytest.ExitCode.NO_TESTS_COLLECTED):

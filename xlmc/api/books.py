@@ -10,7 +10,7 @@ from xlmc.errors import DefinitionError, XlmcError
 from xlmc.montecarlo.model import loading
 
 if TYPE_CHECKING:
-    from xlmc.analysis.studies.seek import Found
+    from xlmc.analysis.studies.seek import Solutions
     from xlmc.analysis.studies.verify import Verification
     from xlmc.api.models import Model
     from xlmc.outputs.replay import Replayed
@@ -53,7 +53,7 @@ def seek(
     low: float | None = None,
     high: float | None = None,
     functions: str | Path | None = None,
-) -> Found:
+) -> Solutions:
     """Find the values of one cell at which another is what it is to be, every other input as the workbook has it.
 
     Args:

@@ -70,21 +70,21 @@ class _Imported(MutableMapping[str, click.Command]):
 
     def __init__(self, names: dict[str, str]) -> None:
         self._names = names
-        self._found: dict[str, click.Command] = {}
+        self._loaded: dict[str, click.Command] = {}
 
     def __getitem__(self, name: str) -> click.Command:
-        if name not in self._found:
+        if name not in self._loaded:
             module, _, command = self._names[name].partition(".")
-            self._found[name] = _quiet_option(getattr(import_module(f"xlmc.cli.{module}"), command))
-        return self._found[name]
+            self._loaded[name] = _quiet_option(getattr(import_module(f"xlmc.cli.{module}"), command))
+        return self._loaded[name]
 
     def __setitem__(self, name: str, command: click.Command) -> None:
         self._names.setdefault(name, "")
-        self._found[name] = command
+        self._loaded[name] = command
 
     def __delitem__(self, name: str) -> None:
         del self._names[name]
-        self._found.pop(name, None)
+        self._loaded.pop(name, None)
 
     def __contains__(self, name: object) -> bool:
         return name in self._names

@@ -75,8 +75,8 @@ def find_roots(function: Function, low: Floats, high: Floats) -> Roots:
         low: `(n,)` the lower end of each trial's range; NaN for a trial without one.
         high: `(n,)` the upper end; a trial whose ends are in the other order has no root.
 
-    >>> found = find_roots(lambda x, trial: x * x - 2.0, np.zeros(3), np.array([1.0, 2.0, 9.0]))
-    >>> found.trials.tolist(), found.values.round(12).tolist()
+    >>> roots = find_roots(lambda x, trial: x * x - 2.0, np.zeros(3), np.array([1.0, 2.0, 9.0]))
+    >>> roots.trials.tolist(), roots.values.round(12).tolist()
     ([1, 2], [1.414213562373, 1.414213562373])
     """
     with np.errstate(all="ignore"):

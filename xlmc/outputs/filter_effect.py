@@ -51,7 +51,7 @@ _BINS = 24
 _LONG = 1.3
 """If all draws cover more than this multiple of their middle 99.6 %, the chart leaves out their tails."""
 
-_FOUND: Final[WeakKeyDictionary[RunResult, dict[str, FilterEffect]]] = WeakKeyDictionary()
+_KNOWN: Final[WeakKeyDictionary[RunResult, dict[str, FilterEffect]]] = WeakKeyDictionary()
 _SHAPES: Final[WeakKeyDictionary[RunResult, dict[str, Shapes | None]]] = WeakKeyDictionary()
 """By assumption. Sheets, page, document and JSON of one run want the same."""
 
@@ -181,7 +181,7 @@ def filter_effect_of(simulation: RunResult, assumption: str) -> FilterEffect | N
     """Return what the filters of a run did to one of its assumptions; None if the assumption is not drawn."""
     if assumption not in simulation.inputs:
         return None
-    result = _FOUND.setdefault(simulation, {})
+    result = _KNOWN.setdefault(simulation, {})
     if assumption not in result:
         weights = None if simulation.weighting is None else simulation.weighting.weights
         replicate = partial(simulation.plan.replicate_of, simulation.trial_index)

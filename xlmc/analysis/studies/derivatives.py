@@ -93,7 +93,7 @@ def derivatives(
     nodes |= {cell: lowering.cell(cell) for cell in targets}
     notes = Notes()
     points = np.column_stack([*draws.values()]) if draws else np.empty((n, 0))
-    result = _Found(n, len(draws), order, set(nodes.values()))
+    result = _Derivatives(n, len(draws), order, set(nodes.values()))
     portion = _portion(lowering, len(draws), order)
     for start in range(0, n, portion):
         part = {name: values[start : start + portion] for name, values in draws.items()}
@@ -131,7 +131,7 @@ def _portion(lowering: Lowering, k: int, order: int) -> int:
     return max(1, _PORTION // each)
 
 
-class _Found:
+class _Derivatives:
     """Arrays for the derivatives of the nodes wanted, filled portion by portion."""
 
     def __init__(self, n: int, k: int, order: int, nodes: Iterable[int]) -> None:
@@ -179,7 +179,7 @@ def _spread_out(value: Value, jet: Jet, into: Floats) -> None:
 
 def _sweep(
     lowering: Lowering,
-    result: _Found,
+    result: _Derivatives,
     draws: Mapping[str, Floats],
     order: int,
     notes: Notes,

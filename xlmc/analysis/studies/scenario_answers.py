@@ -114,14 +114,14 @@ class ScenarioAnswers:
 
 
 @dataclass(frozen=True, slots=True)
-class _Found:
+class _AllAnswers:
     """The answers of the scenarios that are possible, and why each of the others is not, by its name."""
 
     answers: tuple[ScenarioAnswers, ...]
     impossible: Mapping[str, str]
 
 
-_FOUND: Final[WeakKeyDictionary[RunResult, _Found]] = WeakKeyDictionary()
+_ANSWERS: Final[WeakKeyDictionary[RunResult, _AllAnswers]] = WeakKeyDictionary()
 """Terminal, sheets, page and JSON of one run want the same."""
 
 
@@ -145,8 +145,8 @@ def scenario_answers(
         return ()
     from xlmc.montecarlo.definitions.scenarios import Tabulated  # few runs have scenarios
 
-    if run not in _FOUND:
-        _FOUND[run] = result = _answers(run, jobs, tell)
+    if run not in _ANSWERS:
+        _ANSWERS[run] = result = _answers(run, jobs, tell)
         run.take_tabulated(
             {
                 change.number: each.run
@@ -156,12 +156,12 @@ def scenario_answers(
                 if isinstance(change, Tabulated) and len(each.scenario.changes) == 1
             }
         )
-    return _FOUND[run].answers
+    return _ANSWERS[run].answers
 
 
 def impossible_scenarios(run: RunResult) -> Mapping[str, str]:
     """Return why scenarios of a run have no answers, by their names; see `scenario_answers`."""
-    return _FOUND[run].impossible if scenario_answers(run) else {}
+    return _ANSWERS[run].impossible if scenario_answers(run) else {}
 
 
 def refuse_no_scenarios(model: CompiledModel) -> None:
@@ -224,7 +224,7 @@ def scenario_named(model: CompiledModel, scenario: Scenario | str) -> Scenario:
     return known[name_key(scenario)]
 
 
-def _answers(run: RunResult, jobs: int, tell: Callable[[str], None] | None) -> _Found:
+def _answers(run: RunResult, jobs: int, tell: Callable[[str], None] | None) -> _AllAnswers:
     refuse_no_scenarios(run.model)
     answers, impossible = [answers_of(run, None, run)], dict[str, str]()
     for scenario in run.model.definitions.scenarios:
@@ -236,7 +236,7 @@ def _answers(run: RunResult, jobs: int, tell: Callable[[str], None] | None) -> _
             impossible[scenario.name] = str(error).partition("\n")[0]
         else:
             answers.append(answers_of(result, scenario, run))
-    return _Found(tuple(answers), impossible)
+    return _AllAnswers(tuple(answers), impossible)
 
 
 def run_scenario(

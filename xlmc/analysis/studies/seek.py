@@ -34,7 +34,7 @@ from xlmc.montecarlo.model.labels import calculate_labels
 from xlmc.montecarlo.model.solving import unknown_of, with_solved_cells
 from xlmc.montecarlo.number_text import number_text
 
-__all__ = ["Found", "seek"]
+__all__ = ["Solutions", "seek"]
 
 Floats = NDArray[np.float64]
 
@@ -49,7 +49,7 @@ _DRAWN: Final = 201
 
 
 @dataclass(frozen=True, slots=True, repr=False)
-class Found(Shown):
+class Solutions(Shown):
     """What a search found.
 
     Attributes:
@@ -103,7 +103,7 @@ def seek(
     low: float | None = None,
     high: float | None = None,
     functions: OwnFunctions | None = None,
-) -> Found:
+) -> Solutions:
     """Find the values of one cell at which another is what it is to be, every other input as the workbook has it.
 
     Args:
@@ -152,7 +152,7 @@ def seek(
     at = np.linspace(*ends, _DRAWN)
     start = answers(np.full(1, base or 0.0))[0]
     form, form_by = forms_of(workbook, (wanted, unknown))
-    return Found(
+    return Solutions(
         workbook=workbook,
         cell=wanted,
         to=to,

@@ -30,20 +30,20 @@ class NodeBounds:
 
     def __init__(self, dag: Dag, inputs: Mapping[str, Bounds]) -> None:
         self._dag, self._inputs = dag, inputs
-        self._found: list[Bounds] = []
+        self._bounds: list[Bounds] = []
 
     def of(self, node: int) -> Bounds | None:
         """Return the bounds of a node; None if they are not known."""
         if not self._inputs:
             return _of_constant(self._dag, node)
-        while len(self._found) <= node:
+        while len(self._bounds) <= node:
             low, high = self._next()
-            self._found.append((low, high) if low < math.inf and high > -math.inf else _ANY)  # not of overflows, NaNs
-        return None if self._found[node] == _ANY else self._found[node]
+            self._bounds.append((low, high) if low < math.inf and high > -math.inf else _ANY)  # not of overflows, NaNs
+        return None if self._bounds[node] == _ANY else self._bounds[node]
 
     def _next(self) -> Bounds:
         """Bound the first node that has no bounds yet, from the bounds of the nodes before it."""
-        node_id, results = len(self._found), self._found
+        node_id, results = len(self._bounds), self._bounds
         match self._dag.nodes[node_id]:
             case Input(name):
                 return self._inputs.get(name, _ANY)

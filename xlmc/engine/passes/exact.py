@@ -127,11 +127,11 @@ def _apply(body: Callable[..., Item], items: Sequence[Item]) -> Item:
         return ErrorCode.DIV0
     except (ValueError, OverflowError, mpmath.libmp.NoConvergence):
         return ErrorCode.NUM
-    except _FoundError as error:
+    except _CellError as error:
         return error.code
 
 
-class _FoundError(Exception):
+class _CellError(Exception):
     """An error as a value."""
 
     def __init__(self, code: ErrorCode) -> None:
@@ -143,9 +143,9 @@ def _number(item: Item) -> mpf:
     """Return a single value as arithmetic reads it."""
     item = _single(item)
     if isinstance(item, ErrorCode):
-        raise _FoundError(item)
+        raise _CellError(item)
     if isinstance(item, str):
-        raise _FoundError(ErrorCode.VALUE)
+        raise _CellError(ErrorCode.VALUE)
     return mpf(0) if item is None else mpf(item)
 
 
@@ -170,7 +170,7 @@ def _dust_to_zero(result: mpf, size: mpf) -> mpf:
 
 def _power(x: mpf, y: mpf) -> mpf:
     if x == 0 and y <= 0:
-        raise _FoundError(ErrorCode.DIV0 if y < 0 else ErrorCode.NUM)
+        raise _CellError(ErrorCode.DIV0 if y < 0 else ErrorCode.NUM)
     if x < 0 and y != int(y):
         raise ValueError
     return x**y
@@ -208,7 +208,7 @@ def _cells(items: Sequence[Item]) -> list[mpf]:
             continue
         for cell in (cell for row in item for cell in row):
             if isinstance(cell, ErrorCode):
-                raise _FoundError(cell)
+                raise _CellError(cell)
             if isinstance(cell, mpf):
                 result.append(cell)
     return result

@@ -31,7 +31,7 @@ from xlmc.montecarlo.definitions.stopping import Precision
 from xlmc.montecarlo.definitions.tables.assumptions import STREAM
 from xlmc.montecarlo.definitions.tables.settings import LEAST_PERCENT
 from xlmc.montecarlo.distributions import FAMILIES
-from xlmc.montecarlo.distributions.found_member import FoundMember
+from xlmc.montecarlo.distributions.solved_member import SolvedMember
 
 __all__ = ["Block", "Entry", "Formula", "NewRow", "NewTable", "new_tables", "text_of"]
 
@@ -169,7 +169,7 @@ def _filters(definitions: Definitions) -> list[Filter]:
 def _can_be_a_row(assumption: Assumption) -> bool:
     """Whether a row of a table can say it: a family that a table knows, by parameters, percentiles or data."""
     own = assumption.own_family
-    return own is None or isinstance(own, FoundMember) or assumption.data is not None
+    return own is None or isinstance(own, SolvedMember) or assumption.data is not None
 
 
 def _headings(rows: Iterable[NewRow]) -> dict[str, None]:

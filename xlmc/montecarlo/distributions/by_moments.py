@@ -14,8 +14,8 @@ from typing import Any, Final
 import numpy as np
 
 from xlmc.montecarlo.distributions.base import Family, Member, Values
-from xlmc.montecarlo.distributions.found_member import FoundMember
 from xlmc.montecarlo.distributions.parameters import MEAN, STD_DEV, Fault, ParameterSpec, show
+from xlmc.montecarlo.distributions.solved_member import SolvedMember
 
 __all__ = ["COV", "COV_SHARE", "ByMoments", "by_moments"]
 
@@ -68,7 +68,7 @@ def _is_determined(family: Family, own: Collection[str]) -> bool:
     return len(family.roles) > 0 and "ordered" not in family.roles
 
 
-class ByMoments(FoundMember):
+class ByMoments(SolvedMember):
     """The member of a family that has some parameters as given, and this mean and spread; before any truncation.
 
     >>> from xlmc.montecarlo.distributions.logistic import Logistic

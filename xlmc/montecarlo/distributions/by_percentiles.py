@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 
 from xlmc.montecarlo.distributions.base import Array, Family, Member, Values
-from xlmc.montecarlo.distributions.found_member import FoundMember
 from xlmc.montecarlo.distributions.parameters import Fault, ParameterSpec, Role, show
+from xlmc.montecarlo.distributions.solved_member import SolvedMember
 
 __all__ = ["ByPercentiles", "by_percentiles", "match_percentiles"]
 
@@ -55,7 +55,7 @@ def by_percentiles(family: Family, given: Collection[str], percents: Sequence[fl
     return ByPercentiles(family, tuple(key for key in family.keys if key not in unknown), tuple(sorted(percents)))
 
 
-class ByPercentiles(FoundMember):
+class ByPercentiles(SolvedMember):
     """The member of a family that has some parameters as given and these percentiles; before any truncation.
 
     Its parameters are those given, in the family's order, then the percentiles by rising percentage. They are numbers:

@@ -112,14 +112,14 @@ class _Joining:
         book = self._book(feed.book)
         target, source = self._books[book], self._books[self._book(feed.file)]
         label = book or target.path.name
-        assumption = _found(feed.assumption, {"assumption": target.assumptions}, label)
+        assumption = _named(feed.assumption, {"assumption": target.assumptions}, label)
         if isinstance(assumption.cell, InFormula):
             message = f"the assumption {assumption.name!r} is drawn by a call in a formula"
             raise SimulationError(message, where=assumption.row, hint="give it a cell and a row in xlmc_assumptions")
         if assumption.name in {each.name for each in target.needed.idle}:
             message = f"no forecast or filter needs the assumption {assumption.name!r}"
             raise SimulationError(message, where=assumption.cell, hint="feed one that the answers depend on")
-        answer = _found(feed.answer, {"forecast": source.forecasts, "assumption": source.assumptions}, feed.file)
+        answer = _named(feed.answer, {"forecast": source.forecasts, "assumption": source.assumptions}, feed.file)
         factor = factor_between(answer.units, assumption.units)
         if factor is None:
             units = " and ".join(repr(each.units) if each.units else "no unit" for each in (assumption, answer))
@@ -346,7 +346,7 @@ def _parts(tree: ir.Expression) -> list[ir.Expression]:
     return result
 
 
-def _found(name: str, known: Mapping[str, Iterable[Any]], label: str) -> Any:
+def _named(name: str, known: Mapping[str, Iterable[Any]], label: str) -> Any:
     """Return the definition of a name, of the first kind that has it.
 
     Raises:

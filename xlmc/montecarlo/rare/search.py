@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.definitions.definitions import Settings
     from xlmc.montecarlo.model.model import CompiledModel
 
-__all__ = ["Found", "Search", "accepted_blocks", "find", "plain_uniforms", "search"]
+__all__ = ["Search", "SearchResult", "accepted_blocks", "find", "plain_uniforms", "search"]
 
 _AGAIN: Final = 3
 """Times that a proposal is learnt anew because a trial was much heavier than any known."""
@@ -44,7 +44,7 @@ _LOOKED_AT: Final = 32
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Found:
+class SearchResult:
     """What came of it.
 
     Attributes:
@@ -75,7 +75,7 @@ def find(
     say: Say = lambda _: None,
     plain: Sequence[Evidence] = (),
     strata: Sequence[Distance] = (),
-) -> Found:
+) -> SearchResult:
     """Draw `wanted` accepted trials of equal weight.
 
     Args:
@@ -97,7 +97,7 @@ def find(
     for tries_left in range(_AGAIN, -1, -1):
         used, done = learned.best, learned.evaluations + before
         if used is None or wanted > used.rate * (most - done):
-            return Found(learned, None, None, done, checked)
+            return SearchResult(learned, None, None, done, checked)
         drawn = resample(
             accepts,
             used.proposal,
@@ -120,7 +120,7 @@ def find(
             break
         before += drawn.proposals + check.trials
         learned = search_on(distance, learned, missed, learning, count_on(before, say), most - before)
-    return Found(learned, used, drawn, done + drawn.proposals + check.trials, checked, missed)
+    return SearchResult(learned, used, drawn, done + drawn.proposals + check.trials, checked, missed)
 
 
 def _survey(accepts: Accepts, spread: Tempered, trials: int, random: np.random.Generator) -> Evidence:
@@ -245,7 +245,7 @@ def _random(seed: int, purpose: str) -> np.random.Generator:
     return np.random.Generator(np.random.PCG64DXSM(np.random.SeedSequence(seed, spawn_key=words)))
 
 
-def _failure(model: CompiledModel, function: SearchSpace, result: Found, wanted: int, left: int) -> str:
+def _failure(model: CompiledModel, function: SearchSpace, result: SearchResult, wanted: int, left: int) -> str:
     """Why there are no trials, in words."""
     reached = [each for each in result.learned.descents if each.reached]
     if not reached:

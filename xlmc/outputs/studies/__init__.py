@@ -19,7 +19,7 @@ __all__ = ["StudyDocuments"]
 _COMMANDS: Final = {
     "Comparison": "compare",
     "Decided": "decide",
-    "Found": "seek",
+    "Solutions": "seek",
     "Optimised": "optimise",
     "Screening": "screen",
     "Stability": "stability",

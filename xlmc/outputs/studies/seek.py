@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from xlmc.montecarlo.number_text import count_text
 
 if TYPE_CHECKING:
-    from xlmc.analysis.studies.seek import Found
+    from xlmc.analysis.studies.seek import Solutions
     from xlmc.montecarlo.definitions.forms import Form
     from xlmc.outputs.document.parts import Block
     from xlmc.outputs.study_report import StudyReport
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["seek_report"]
 
 
-def seek_report(result: Found) -> StudyReport:
+def seek_report(result: Solutions) -> StudyReport:
     """Make the report."""
     from xlmc.outputs.document.parts import blocks_of
     from xlmc.outputs.study_report import StudyReport
@@ -27,7 +27,7 @@ def seek_report(result: Found) -> StudyReport:
     return StudyReport(title, below, blocks_of(_blocks(result)), "Seek", partial(_as_json, result))
 
 
-def _blocks(result: Found) -> Iterator[str | Block]:
+def _blocks(result: Solutions) -> Iterator[str | Block]:
     from xlmc.outputs.document.parts import Chart, Figure, Line, Lines, Table
 
     to, by = result.form.number(result.to), result.form_by
@@ -84,7 +84,7 @@ def _solved(form: Form, value: float) -> str:
     return f"{form.number(value)} ({serial})"
 
 
-def _as_json(result: Found) -> dict[str, object]:
+def _as_json(result: Solutions) -> dict[str, object]:
     from xlmc.montecarlo.statistics.estimate import finite
 
     return {

@@ -53,8 +53,8 @@ def fed_model(model: CompiledModel, source: RunResult, feeds: Mapping[str, str])
     fed: dict[str, Assumption] = {}
     values: list[Floats] = []
     for mine, theirs in feeds.items():
-        assumption = _found(mine, named, "assumption", model)
-        forecast = _found(theirs, given, "forecast", source.model)
+        assumption = _named(mine, named, "assumption", model)
+        forecast = _named(theirs, given, "forecast", source.model)
         if assumption in model.needed.idle:
             message = f"no forecast or filter needs the assumption {assumption.name!r}"
             raise SimulationError(message, where=assumption.cell, hint="feed one that the answers depend on")
@@ -66,7 +66,7 @@ def fed_model(model: CompiledModel, source: RunResult, feeds: Mapping[str, str])
     trials = np.stack(values)
     trials = trials[:, np.isfinite(trials).all(axis=0)]
     if trials.shape[1] < _FEWEST:
-        answers = " and ".join(repr(_found(each, given, "forecast", source.model).name) for each in feeds.values())
+        answers = " and ".join(repr(_named(each, given, "forecast", source.model).name) for each in feeds.values())
         number = "is a number" if len(feeds) == 1 else "are numbers together"
         message = f"{answers} {number} in {trials.shape[1]} accepted trials, too few to draw from"
         raise SimulationError(message, where=source.model.path.name, hint="run more trials: -n")
@@ -77,7 +77,7 @@ def fed_model(model: CompiledModel, source: RunResult, feeds: Mapping[str, str])
     return CompiledModel(model.workbook, definitions, Path(f"{model.path.name} fed by {source.model.path.name}"))
 
 
-def _found(name: str, known: Mapping[str, Named], kind: str, model: CompiledModel) -> Named:
+def _named(name: str, known: Mapping[str, Named], kind: str, model: CompiledModel) -> Named:
     if name_key(name) not in known:
         hint = f"there are {', '.join(dict.fromkeys(repr(each.name) for each in known.values()))}"
         raise SimulationError(f"there is no {kind} {name.strip()!r}", where=model.path.name, hint=hint)

@@ -37,13 +37,13 @@ __all__ = ["Optimised", "in_step", "widen_bounds"]
 
 Asked = TypeVar("Asked")
 Answered = TypeVar("Answered")
-Found = TypeVar("Found")
+Result = TypeVar("Result")
 
 
 def in_step(
-    searches: Sequence[Callable[[Callable[[Asked], Answered]], Found]],
+    searches: Sequence[Callable[[Callable[[Asked], Answered]], Result]],
     answer: Callable[[list[Asked]], Sequence[Answered]],
-) -> list[Found]:
+) -> list[Result]:
     """Run every search in a thread of its own; each is given what answers one question, and waits for the others'.
 
     Args:
@@ -59,7 +59,7 @@ def in_step(
     [4, 4]
     """
     round_ = _Round(len(searches), answer)
-    result: dict[int, Found] = {}
+    result: dict[int, Result] = {}
 
     def run(index: int) -> None:
         try:

@@ -28,7 +28,7 @@ _MOST_LIMIT_FORECASTS: Final = 12
 """The most limits; more would make no readable charts, and take long."""
 
 _WORDS: Final = {">=": "at least", "<=": "at most", ">": "above", "<": "below"}
-_FOUND: Final[WeakKeyDictionary[RunResult, dict[tuple[tuple[int, ...], frozenset[str]], Sensitivities]]] = (
+_KNOWN: Final[WeakKeyDictionary[RunResult, dict[tuple[tuple[int, ...], frozenset[str]], Sensitivities]]] = (
     WeakKeyDictionary()
 )
 """By the numbers of the forecasts and the assumptions asked for. Sheets, page and JSON of one run want the same."""
@@ -54,7 +54,7 @@ def sensitivities(
     Raises:
         SimulationError: no assumption that is drawn has one of these names.
     """
-    model, known = simulation.model, _FOUND.setdefault(simulation, {})
+    model, known = simulation.model, _KNOWN.setdefault(simulation, {})
     names = simulation.detailed if names is None else names
     result = [i for i, each in enumerate(model.forecasts) if each.name in names]
     wanted = tuple(i for i in result if i not in model.categories)  # texts have no variance to explain

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from xlmc.montecarlo.model.model import CompiledModel
     from xlmc.montecarlo.simulation.simulation import RunResult
 
-__all__ = ["Limit", "LimitsFound", "TriedLimit", "limit_trials"]
+__all__ = ["Limit", "TriedLimit", "TriedLimits", "limit_trials"]
 
 Bools = NDArray[np.bool_]
 
@@ -120,7 +120,7 @@ class TriedLimit:
 
 
 @dataclass(frozen=True)
-class LimitsFound:
+class TriedLimits:
     """The limits that are numbers, `omitted` more of them, and the filters with a limit that varies."""
 
     tried: tuple[TriedLimit, ...] = ()
@@ -143,7 +143,7 @@ class _More:
         return cls(*(np.concatenate(each, axis=-1) for each in zip(*columns, strict=True)))
 
 
-def limit_trials(simulation: RunResult, most: int, forecasts: Sequence[int]) -> LimitsFound:
+def limit_trials(simulation: RunResult, most: int, forecasts: Sequence[int]) -> TriedLimits:
     """Gather the trials of the first `most` limits of a run, and the forecasts with these numbers in them.
 
     Nothing is found where the draws of fewer than two accepted trials were kept, and no limit is tried where accepted
@@ -151,10 +151,10 @@ def limit_trials(simulation: RunResult, most: int, forecasts: Sequence[int]) -> 
     """
     cells = _LimitCells(simulation.model)
     if simulation.rare is not None:
-        return LimitsFound(omitted=len(cells.limits))
+        return TriedLimits(omitted=len(cells.limits))
     m = min(simulation.kept_inputs, simulation.accepted, _MOST_ACCEPTED)
     if not cells.limits or not simulation.model.live or m < 2:
-        return LimitsFound()
+        return TriedLimits()
     now = _look_at_accepted(simulation, cells, m)
     constant = [bool(np.all(bound == bound[0])) for bound in now.bounds]
     fixed_limits = [i for i, fixed in enumerate(constant) if fixed]
@@ -181,7 +181,7 @@ def limit_trials(simulation: RunResult, most: int, forecasts: Sequence[int]) -> 
         )
         tried.append(TriedLimit(limit, result, limits))
     varying = [limit.filter.name for limit, fixed in zip(cells.limits, constant, strict=True) if not fixed]
-    return LimitsFound(tuple(tried), max(0, len(fixed_limits) - most), tuple(dict.fromkeys(varying)))
+    return TriedLimits(tuple(tried), max(0, len(fixed_limits) - most), tuple(dict.fromkeys(varying)))
 
 
 def _look_at_accepted(simulation: RunResult, cells: _LimitCells, m: int) -> _CellValues:

@@ -102,15 +102,15 @@ class _Dialogs:
         self._names = ObjectNames(workbook)
         self._uncertain, self._answers = assumptions, forecasts
         self._taken = dict(assumptions.cells)  # by rows of tables
-        self._found = FromDialogs()
+        self._read = FromDialogs()
         self._drawn: dict[_Key, str] = {}
         self._places = {name: number for number, name in enumerate(workbook.sheets)}
 
     def read(self, blocks: Blocks) -> FromDialogs:
         stored = blocks.objects
-        self._found.stored = True
+        self._read.stored = True
         for damage in blocks.damages:
-            self._found.damages.append(str(damage))
+            self._read.damages.append(str(damage))
         for sheet, each, cell in self._placed(stored, StoredAssumption):
             self._assumption(sheet, each, cell)
         for sheet, forecast, cell in self._placed(stored, StoredForecast):
@@ -122,9 +122,9 @@ class _Dialogs:
         self._refuse_missing(stored)
         self._remark_on_decisions(stored)
         self._remark_on_others(each for _, each in stored)
-        if self._found.assumptions:
+        if self._read.assumptions:
             self._findings.notice(_RUN_PREFERENCES, self._workbook.name)
-        return self._found
+        return self._read
 
     def _placed(self, stored: Iterable[tuple[str, Stored]], kind: type[_T]) -> list[tuple[str, _T, Cell]]:
         """Return the objects of a kind with their sheets and cells, by sheet, row and column; those of no cell left
@@ -175,8 +175,8 @@ class _Dialogs:
         self._uncertain.take_cell(cell, cell)
         name = _free_name(name, cell, self._uncertain, self._findings)
         self._drawn[sheet, stored.guid] = name
-        self._found.rewritten |= rewritten
-        self._found.assumptions.append(
+        self._read.rewritten |= rewritten
+        self._read.assumptions.append(
             Assumption(
                 name=name,
                 cell=cell,
@@ -293,8 +293,8 @@ class _Dialogs:
         if stored.filter is not None:
             self._filter(stored.filter, name, cell)
         if stored.precision is not None:
-            self._found.precisions[name] = stored.precision
-        self._found.forecasts.append(
+            self._read.precisions[name] = stored.precision
+        self._read.forecasts.append(
             Forecast(name, cell, cell, stored.units, self._central, threshold, {DIALOG: "a forecast"}, asked)
         )
 
@@ -310,7 +310,7 @@ class _Dialogs:
         if stored.everywhere:
             message = f"Crystal Ball's filter of {name!r} discards the trial for all forecasts; {UNPROVEN}"
             self._findings.notice(message, cell)
-        self._found.filters.append(
+        self._read.filters.append(
             replace(
                 self._accepts_outside(stored, cell) if stored.inside else _accepts_inside(stored, cell),
                 name=f"Filter of {name}",
@@ -324,7 +324,7 @@ class _Dialogs:
         ends = [("<", stored.low)] * math.isfinite(stored.low) + [(">", stored.high)] * math.isfinite(stored.high)
         parts = [ir.Binary(sign, cell, ir.Number(end), all_bits=True) for sign, end in ends]
         site = InFormula.of(cell, "filter")
-        self._found.rewritten[site] = ir.Call("OR", tuple(parts)) if parts else ir.Logical(value=False)
+        self._read.rewritten[site] = ir.Call("OR", tuple(parts)) if parts else ir.Logical(value=False)
         return Filter("", site, cell)
 
     def _limits(
@@ -371,13 +371,13 @@ class _Dialogs:
             raise DefinitionError(
                 f"{first!r} is correlated with itself", where=where, hint="Correct it in Crystal Ball"
             )
-        if any({each.first, each.second} == pair for each in self._found.correlations):
+        if any({each.first, each.second} == pair for each in self._read.correlations):
             message = f"Crystal Ball correlates {first!r} and {second!r} twice"
             raise DefinitionError(message, where=where, hint="Keep one of the two correlations")
         refers = any(reference.kind == OF_COEFFICIENTS for reference in stored.references)
         coefficient_cell = where if refers and self._computed.by_formula(where) else value
         if coefficient_cell != 0:
-            self._found.correlations.append(Correlation(first, second, coefficient_cell, where))
+            self._read.correlations.append(Correlation(first, second, coefficient_cell, where))
 
     def _end(self, sheet: str, end: tuple[str, str], known: Mapping[_Key, StoredAssumption]) -> _Key | None:
         """Return the assumption that is meant, if it was read; copies of a sheet have assumptions of the same GUIDs."""
@@ -405,7 +405,7 @@ class _Dialogs:
                 raise DefinitionError(message, where=own or sheet, hint=_CURE_OF_CORRELATION)
             content = self._workbook.content(tree)
             return number_in(f"The correlation of {first!r} and {second!r}", content, tree), tree
-        at = own or next(a.cell for a in self._found.assumptions if a.name == first)
+        at = own or next(a.cell for a in self._read.assumptions if a.name == first)
         return stored.coefficient, at
 
     # names and remarks
@@ -426,7 +426,7 @@ class _Dialogs:
         return str(cell)
 
     def _refuse(self, cell: Cell, message: str) -> None:
-        self._found.rewritten[cell] = FormulaError(message, where=cell, hint=_CURE)
+        self._read.rewritten[cell] = FormulaError(message, where=cell, hint=_CURE)
 
     def _refuse_missing(self, stored: list[tuple[str, Stored]]) -> None:
         """Tell of cells that a name marks as an object's and whose object is not there; a constant is refused, too."""
@@ -437,11 +437,11 @@ class _Dialogs:
             if (sheet, guid) in known or cell in self._uncertain.cells or cell in self._answers.cells:
                 continue
             missing.append(str(cell))
-            if content.formula is None and cell not in self._found.rewritten:
+            if content.formula is None and cell not in self._read.rewritten:
                 self._refuse(cell, "Crystal Ball kept something of this cell, and it is missing or damaged")
         if missing:
             what = "assumptions, forecasts with their filters, or correlations, and they are missing or damaged"
-            self._found.damages.append(f"Crystal Ball kept something of {', '.join(dict.fromkeys(missing))}: {what}")
+            self._read.damages.append(f"Crystal Ball kept something of {', '.join(dict.fromkeys(missing))}: {what}")
 
     def _remark_on_decisions(self, stored: list[tuple[str, Stored]]) -> None:
         result = self._placed(stored, StoredDecision)
@@ -455,7 +455,7 @@ class _Dialogs:
             assert each.steps is not None
             low, high, step = map(show, each.steps)
             read.append(f"{name!r} ({cell}, {low} to {high} in steps of {step})")
-            self._found.decisions.append(decision)
+            self._read.decisions.append(decision)
         if read:
             takes = "a run takes what the cells of decision variables hold, and xlmc optimise finds the best values"
             self._findings.notice(f"{takes}: {', '.join(read)}. {_INFERRED}", result[0][2])

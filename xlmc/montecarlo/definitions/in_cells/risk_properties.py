@@ -142,7 +142,7 @@ def _partner(depends: bool) -> _Taken:
     return taken
 
 
-def _library(_found: Properties, _arguments: _Given) -> Properties:
+def _library(_of_call: Properties, _arguments: _Given) -> Properties:
     hint = "to draw from the distribution as it is written in this cell, take RiskLibrary out"
     raise FormulaError(
         "RiskLibrary replaces the distribution by one of a library that is not in the workbook", hint=hint

@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from xlmc.montecarlo.distributions.base import Array, Family, Member, Values
 from xlmc.montecarlo.distributions.parameters import ParameterSpec
 
-__all__ = ["FoundMember"]
+__all__ = ["SolvedMember"]
 
 
-class FoundMember(Family):
+class SolvedMember(Family):
     """The member of a family that has some parameters as given and some other numbers; before any truncation.
 
     Its parameters are those given, in the family's order, then the other numbers. They are numbers: unlike other

@@ -177,7 +177,7 @@ def _lower_with_needs(first: Cell, lowers: Lowers) -> None:
         while at.waits and lowers.is_lowered(at.waits[-1]):
             at.waits.pop()
         if lowers.is_lowered(at.cell):  # found to be in a circle meanwhile
-            del open_[at.cell]
+            open_.popitem()
             lowers.circle.discard(at.cell)
         elif not at.waits:
             at.waits = [need for need in lowers.lower_next(at.cell) if not _is_open(need, at, open_, lowers)]
@@ -212,7 +212,7 @@ def _too_many(cells: Sequence[Cell]) -> FormulaError:
 
 def _close(at: _Open, open_: dict[Cell, _Open], lowers: Lowers) -> None:
     """Go on after a cell was lowered: what was lowered without its value is lowered again, if it is needed."""
-    del open_[at.cell]
+    open_.popitem()  # it is the last; `del` would leave a gap that each later look at the end has to pass
     lowers.circle.discard(at.cell)
     node = lowers.node_of(at.cell)
     for cell in at.without:

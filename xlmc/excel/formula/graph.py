@@ -153,7 +153,7 @@ class _Walk:
                         break
             else:
                 ordered[cell] = self._open.pop(cell)
-                del trail[cell]
+                trail.popitem()  # `del` would leave a gap that each later look at the end has to pass
                 for part in self.needs.parts[cell]:
                     if isinstance(part, Stretch):
                         part.note_ordered()

@@ -22,6 +22,15 @@ def test_a_new_file_and_our_own_may_be_written(tmp_path):
     Target(page(tmp_path / "ours.html"), "CASE.xlsx").check()
 
 
+def test_a_copy_of_what_xlmc_hands_out_may_be_replaced_until_it_is_edited(tmp_path):
+    handed_out = [page(tmp_path / "one.xlsx", b"template one"), page(tmp_path / "two.xlsx", b"template two")]
+    copy = page(tmp_path / "copy.xlsx", b"template two")
+    assert Target(copy, "copy.xlsx", untouched=handed_out).foreign is None
+    assert Target(copy, "copy.xlsx").foreign is not None
+    copy.write_bytes(b"template two, edited")
+    assert Target(copy, "copy.xlsx", untouched=handed_out).foreign is not None
+
+
 @pytest.mark.parametrize(
     ("name", "content", "reason"),
     [

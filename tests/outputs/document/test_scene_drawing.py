@@ -58,6 +58,15 @@ def test_a_flat_scene_has_room_and_numbers_on_both_axes():
     assert float(root.get("viewBox").split()[3]) > 120
 
 
+def test_the_title_of_the_upright_axis_alone_is_turned():
+    root = ElementTree.fromstring(scene_drawing(book(series([0, 10], [0, 10]))).svg)
+    texts = {each.text: each for each in root.iter("{http://www.w3.org/2000/svg}text")}
+    assert "rotate(-90" in texts["Y, ft"].get("transform")
+    assert texts["X, ft"].get("transform") is None
+    assert float(texts["Y, ft"].get("x")) < float(texts["X, ft"].get("x"))
+    assert float(texts["Y, ft"].get("y")) < float(texts["X, ft"].get("y"))
+
+
 def test_up_is_up_and_right_is_right():
     ((a, b),) = paths(scene_drawing(book(series([0, 10], [0, 10]))))
     assert b[0] > a[0]

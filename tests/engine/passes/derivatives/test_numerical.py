@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from xlmc.engine.passes.derivatives.jet import Jet
-from xlmc.engine.passes.derivatives.numerical import by_differences
+from xlmc.engine.passes.derivatives.numerical import _best, by_differences
 from xlmc.engine.passes.derivatives.rules import Operand
 from xlmc.errors import ErrorCode
 from xlmc.excel.functions.values import Value, constant, from_objects
@@ -345,3 +345,17 @@ def test_three_trials_of_a_text_that_stands_still():
     jet = Jet(np.zeros(3), (0,), np.zeros((1, 3)), np.zeros((1, 1, 3)))
     outcome = by_differences(lambda values: values[0], texts, [Operand(texts, jet)])
     assert outcome.jet.first.tolist() == [[0.0, 0.0, 0.0]]
+
+
+@pytest.mark.parametrize("terms", [2, 3, 4])
+def test_differences_at_halved_steps_are_extrapolated_to_the_last_term(terms):
+    """T(h) = 2 + h² + h⁴ + …: Richardson's table removes one term with each further step, and is then exact."""
+    rows = [np.array([2.0 + sum(h ** (2 * k) for k in range(1, terms))]) for h in (0.5, 0.25, 0.125, 0.0625)]
+    best, error = _best(rows, [np.zeros(1)] * len(rows))
+    assert best[0] == pytest.approx(2.0, abs=1e-12 if terms < 4 else 1e-4)
+    assert abs(best[0] - 2.0) <= error[0] + 1e-15
+
+
+def test_the_entry_with_the_least_error_is_taken_and_noise_adds_to_it():
+    best, error = _best([np.array([1.0]), np.array([1.0]), np.array([7.0])], [np.full(1, 0.25)] * 3)
+    assert (best[0], error[0]) == (1.0, 0.25)

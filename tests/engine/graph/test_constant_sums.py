@@ -101,6 +101,17 @@ def test_a_product_that_overflows_is_an_error_though_the_sum_would_not(run):
     assert first == pytest.approx(smaller * 1e-200, abs=1e-13)
 
 
+def test_constants_that_cancel_one_after_the_other_give_nothing(run):
+    """They are added from left to right, as Excel adds the products."""
+    pairs = {
+        f"K!{column_letters(c + 1)}{r + 1}": 0.1 * (r + c // 2 + 1) * (-1) ** c
+        for r in range(ROWS)
+        for c in range(COLUMNS - 1)
+    }
+    last = {f"K!{LAST}{r + 1}": 0.0 for r in range(ROWS)}
+    assert run(cells(f"SUMPRODUCT({K}*A1)", pairs | last), {"A1": A1}, ["ZZ1"]).forecasts[0] == [0.0] * 3
+
+
 def test_whole_columns_stay_what_they_are(run):
     made = cells(f"SUMPRODUCT((K!$A:$A>0)*K!$A:${LAST}*A1)")
     expected = ((DATA[:, :1] > 0) * DATA).sum() * A1

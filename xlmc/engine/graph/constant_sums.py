@@ -20,6 +20,7 @@ from xlmc.excel.address import Area
 from xlmc.excel.formula import ir
 from xlmc.excel.formula.precedents import references
 from xlmc.excel.functions.families import REGISTRY
+from xlmc.excel.functions.samples import row_sums
 from xlmc.excel.functions.values import NUMBER, Value
 
 __all__ = ["SUMS"]
@@ -50,9 +51,11 @@ def _sum(name: str, lowering: TreeLowering, arguments: tuple[ir.Expression, ...]
     if not isinstance(known, Constant) or (known.value.kinds != NUMBER).any():
         return None
     numbers = np.broadcast_to(known.value.as_range().numbers, (1, rows, columns))
-    axes = tuple(axis for axis in (1, 2) if left[axis - 1] == 1)
+    lines = numbers[0].T if left[0] == 1 else numbers[0]  # each is added up, from left to right as SUM does
+    if left == [1, 1]:
+        lines = numbers.reshape(1, -1)
     with np.errstate(over="ignore", invalid="ignore"):
-        total, most = numbers.sum(axis=axes, keepdims=True), np.abs(numbers).max(axis=axes, keepdims=True)
+        total, most = (each.reshape(1, *left) for each in (row_sums(lines), np.abs(lines).max(axis=1)))
     if not np.isfinite(total).all():
         return None
     terms, largest = (_times(lowering, each, varying) for each in (total, most))

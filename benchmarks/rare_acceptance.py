@@ -32,7 +32,7 @@ from tables import placed
 
 import xlmc.montecarlo.statistics as xs
 from xlmc.montecarlo.rare.limit_state_function import LimitStateFunction
-from xlmc.montecarlo.rare.search import Found
+from xlmc.montecarlo.rare.search import SearchResult
 from xlmc.montecarlo.statistics import Estimate
 
 __all__ = ["covered", "estimates", "faults"]
@@ -53,7 +53,7 @@ Answers = list[Estimate]
 """By labels."""
 
 
-def estimates(result: Found, values: Floats) -> Answers:
+def estimates(result: SearchResult, values: Floats) -> Answers:
     """By STATISTICS."""
     assert result.resampled is not None
     sample = xs.Sample.of(values)

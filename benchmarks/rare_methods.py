@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import ndtr, ndtri
 
-from xlmc.montecarlo.rare.search import Found, find
+from xlmc.montecarlo.rare.search import SearchResult, find
 from xlmc.montecarlo.rare.splitting import descend
 
 __all__ = ["Distance", "Floats", "compared", "one_run"]
@@ -22,7 +22,7 @@ BINS = 64
 """Equally likely intervals of each uniform in the grid that proposals are compared with."""
 
 
-def one_run(distance: Distance, dimensions: int, seed: int, wanted: int) -> Found:
+def one_run(distance: Distance, dimensions: int, seed: int, wanted: int) -> SearchResult:
     """Accepted trials, from two streams of a seed."""
     learning, drawing = (np.random.default_rng((seed, purpose)) for purpose in (0, 1))
     return find(distance, lambda z: distance(z) == 0.0, dimensions, wanted, MOST, learning, drawing)

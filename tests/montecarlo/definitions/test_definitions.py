@@ -179,7 +179,7 @@ def test_a_coefficient_is_a_number_once_a_model_is_made():
     assert Correlation("a", "b", 0.5, HERE).number == 0.5
     assert Correlation("a", "b", 0.5, HERE).weight == 0.0
     with pytest.raises(AssertionError, match="has not been computed"):
-        Correlation("a", "b", B2, HERE).number  # noqa: B018
+        Correlation("a", "b", B2, HERE).number  # noqa: B018 - reading it is what raises
 
 
 def test_rows_that_are_switched_off():

@@ -151,7 +151,9 @@ def test_where_no_population_arrives_known_trials_lead(random):
     def distance(points):
         return np.where(np.abs(points[:, 0] - 2.0) < 0.05, 0.0, np.inf)
 
-    monotone = lambda points: np.where(np.abs(points[:, 0] - 2.0) < 1e-9, 0.0, 1.0)  # noqa: E731
+    def monotone(points):
+        return np.where(np.abs(points[:, 0] - 2.0) < 1e-9, 0.0, 1.0)
+
     assert learned_of(monotone, random).rounds == ()
     points = 2.0 + 0.1 * (random.random((50, 1)) - 0.5)
     trials = round(50 / (stats.norm.cdf(2.05) - stats.norm.cdf(1.95)))
@@ -162,7 +164,10 @@ def test_where_no_population_arrives_known_trials_lead(random):
 
 def test_a_search_goes_on_from_accepted_trials(random):
     """The other side of |x| > 3, from twenty trials there."""
-    both = lambda points: np.maximum(3.0 - np.abs(points[:, 0]), 0.0)  # noqa: E731
+
+    def both(points):
+        return np.maximum(3.0 - np.abs(points[:, 0]), 0.0)
+
     learned = learned_of(beyond(3.0), random)
     points = -3.0 - 0.2 * random.random((20, 1))
     evidence = Evidence.of(Plain(), round(20 / stats.norm.sf(3.0)), points)

@@ -21,7 +21,7 @@ from xlmc.excel.formula import ir
 from xlmc.excel.formula.precedents import references
 from xlmc.excel.functions.families import REGISTRY
 from xlmc.excel.functions.samples import row_sums
-from xlmc.excel.functions.values import NUMBER, Value
+from xlmc.excel.functions.values import NUMBER, Floats, Value
 
 __all__ = ["SUMS"]
 
@@ -39,9 +39,9 @@ def _sum(name: str, lowering: TreeLowering, arguments: tuple[ir.Expression, ...]
         return None
     rows, columns = (max(size[i] for size in sizes.values()) for i in (0, 1))
     varying = [(operator, node) for operator, node in nodes if not isinstance(dag.nodes[node], Constant)]
-    left = [max((sizes[node][i] for _, node in varying), default=1) for i in (0, 1)]  # rows and columns of those
+    spread = [max((sizes[node][i] for _, node in varying), default=1) for i in (0, 1)]  # rows and columns of those
     fits = all(size[0] in (1, rows) and size[1] in (1, columns) for size in sizes.values())
-    if not fits or rows * columns <= LARGEST or 1 not in left or left == [rows, columns] or not varying:
+    if not fits or rows * columns <= LARGEST or 1 not in spread or spread == [rows, columns] or not varying:
         return None
     product = lowering.number(1.0)
     for operator, node in nodes:
@@ -51,11 +51,11 @@ def _sum(name: str, lowering: TreeLowering, arguments: tuple[ir.Expression, ...]
     if not isinstance(known, Constant) or (known.value.kinds != NUMBER).any():
         return None
     numbers = np.broadcast_to(known.value.as_range().numbers, (1, rows, columns))
-    lines = numbers[0].T if left[0] == 1 else numbers[0]  # each is added up, from left to right as SUM does
-    if left == [1, 1]:
+    lines = numbers[0].T if spread[0] == 1 else numbers[0]  # each is added up, from left to right as SUM does
+    if spread == [1, 1]:
         lines = numbers.reshape(1, -1)
     with np.errstate(over="ignore", invalid="ignore"):
-        total, most = (each.reshape(1, *left) for each in (row_sums(lines), np.abs(lines).max(axis=1)))
+        total, most = (each.reshape(1, *spread) for each in (row_sums(lines), np.abs(lines).max(axis=1)))
     if not np.isfinite(total).all():
         return None
     terms, largest = (_times(lowering, each, varying) for each in (total, most))
@@ -85,7 +85,7 @@ def _may_be_large(tree: ir.Expression) -> bool:
     return max(area.rows for area in areas) * max(area.columns for area in areas) > LARGEST
 
 
-def _times(lowering: TreeLowering, numbers: np.ndarray, factors: list[tuple[str, int]]) -> int:
+def _times(lowering: TreeLowering, numbers: Floats, factors: list[tuple[str, int]]) -> int:
     """Return the node of constants `(1, r, c)`, a single one as such, times the factors."""
     node = lowering.dag.constant(Value.of_numbers(numbers if numbers.size > 1 else numbers.ravel()))
     for operator, factor in factors:

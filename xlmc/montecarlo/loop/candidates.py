@@ -11,7 +11,7 @@ decisions cannot be inputs, each candidate is the workbook with its values typed
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from typing import Final
@@ -238,10 +238,10 @@ class CandidateTrials:
         self._by_inputs, self.by_typing = model, False
         for candidate in self._looked_at():
             self.by_typing = False
-            (held,) = self.forecasts([candidate], 0, _CHECKED)
+            (drawn,) = self.forecasts([candidate], 0, _CHECKED)
             self.by_typing = True
             (typed,) = self.forecasts([candidate], 0, _CHECKED)
-            if not np.allclose(held.columns, typed.columns, rtol=_ALIKE, atol=0.0, equal_nan=True):
+            if not np.allclose(drawn.columns, typed.columns, rtol=_ALIKE, atol=0.0, equal_nan=True):
                 return None
         self.computed = 0
         return model
@@ -293,29 +293,31 @@ def _model_with_inputs(model: CompiledModel, decisions: Sequence[Decision]) -> C
     )
 
 
+@dataclass(slots=True)
+class _Slot:
+    """The value of a decision in the candidate that is run."""
+
+    value: float = 0.0
+
+
 class _FixedDraw(Draw):
     """A decision, which is the same in all trials of a candidate."""
 
-    value: Callable[[], float]
+    slot: _Slot
 
     def fill(self, u: Floats, dynamic: Mapping[Cell, Floats]) -> None:
         """See `Draw`."""
-        u[:] = self.value()
+        u[:] = self.slot.value
 
     def offset_and_factor(self) -> None:
         """See `Draw`."""
 
     @classmethod
-    def instead_of(cls, draw: Draw, value: Callable[[], float]) -> _FixedDraw:
+    def instead_of(cls, draw: Draw, slot: _Slot) -> _FixedDraw:
         """Return what takes the place of a draw."""
         fixed_draw = cls(draw.name, draw.family, draw.parameters, draw.cutoffs)
-        object.__setattr__(fixed_draw, "value", value)  # a draw is frozen
+        object.__setattr__(fixed_draw, "slot", slot)  # a draw is frozen
         return fixed_draw
-
-
-@dataclass(slots=True)
-class _Slot:
-    value: float = 0.0
 
 
 class _FixedDraws:
@@ -328,7 +330,7 @@ class _FixedDraws:
         draws = dict(model.draws)
         for name, slot in self._values.items():
             if name in draws:
-                draws[name] = _FixedDraw.instead_of(draws[name], lambda slot=slot: slot.value)  # type: ignore[misc]
+                draws[name] = _FixedDraw.instead_of(draws[name], slot)
         self._sampler = model.sampler(seed, block, engine, draws=draws)
         self._again = len(model.needed.stages) < 2
         self._stored: dict[int, dict[str, Floats]] = {}
